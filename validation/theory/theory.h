@@ -1,0 +1,65 @@
+/*
+ * Closed forms that the gate holds a candidate to. Nothing here includes or calls the solver.
+ *
+ * Conventions: n points from particle 1 to particle 2; forces are those on a particle; stress is positive in tension;
+ * laboratory velocities. Every function names its source and a second origin of its numbers.
+ */
+#ifndef THEORY_H
+#define THEORY_H
+
+#include <stdbool.h>
+
+/* A sphere of a pair: radius [L], position [L], velocity [L/T], spin [1/T]. */
+struct theory_sphere { double radius, x[3], u[3], w[3]; };
+
+/* Force and torque on both spheres, and the stress sum F_1 (x) (x_2 - x_1) [M L^2/T^2] (not divided by a volume). */
+struct theory_pair { double force[2][3], torque[2][3], stress[3][3]; };
+
+/* Model constants of Li (2026): what the candidate declares. */
+struct theory_lubrication { double viscosity, inner_gap, outer_gap; bool exact_rotation; };
+struct theory_contact { double normal_stiffness, tangential_stiffness, friction; bool lever_at_contact; };
+
+/*
+ * The pair resistance scalars of the truncated model at dimensionless gap xi: 0 X_A, 1 Y_A, 2 B_1, 3 B_2, 4 C_11, 5 C_12, 6 C_22.
+ * Written from the near-field functions of Jeffrey & Onishi (1984) in their variables, lambda = a_2/a_1.
+ */
+enum { THEORY_XA, THEORY_YA, THEORY_B1, THEORY_B2, THEORY_C11, THEORY_C12, THEORY_C22, THEORY_SCALARS };
+extern const char *const theory_scalar_name[THEORY_SCALARS];
+void theory_scalars(const struct theory_lubrication *law, double a1, double a2, double distance, double scalar[THEORY_SCALARS]);
+
+/* Grand resistance matrix of a pair, order U_1 U_2 W_1 W_2 (12 x 12, row-major), force = - R u. */
+void theory_pair_resistance(const struct theory_lubrication *law, double a1, double a2, const double r[3], double R[144]);
+
+/* Lubrication on a frozen pair, through the matrix. */
+void theory_lubrication_pair(const struct theory_lubrication *law, const struct theory_sphere s[2], struct theory_pair *out);
+
+/* Linear spring with tangential history (displacement of surface 1 relative to 2) and Coulomb cap, no time passing. */
+void theory_contact_pair(const struct theory_contact *law, const struct theory_sphere s[2], const double history[3],
+                         struct theory_pair *out);
+
+/* Stokes drag on one sphere in the flow U_inf = G x, G[a][b] = dU_a/dx_b; force, torque, stresslet (20/3) pi eta a^3 E. */
+void theory_drag(double viscosity, bool with_torque, const double G[3][3], const struct theory_sphere *s,
+                 double force[3], double torque[3], double stresslet[3][3]);
+
+/* What the truncation leaves of angular momentum balance: T_1 + T_2 + r x F_2, for lubrication and for a contact (lever radius). */
+void theory_lubrication_torque_residual(const struct theory_lubrication *law, const struct theory_sphere s[2], double residual[3]);
+void theory_contact_torque_residual(const struct theory_contact *law, const struct theory_sphere s[2], const double history[3],
+                                    double residual[3]);
+
+/* Langevin sphere (Li 2026 eq 4.1, 4.2): per Cartesian component. mass m, friction zeta (6 pi eta a or 8 pi eta a^3 with m -> I). */
+double theory_langevin_msd(double kT, double mass, double friction, double t);          /* started from equilibrium */
+double theory_langevin_vacf(double kT, double mass, double friction, double t);
+/* Covariance of (displacement, velocity) at two times for a sphere at equilibrium: <dx(s) dx(t)>. */
+double theory_langevin_msd_covariance(double kT, double mass, double friction, double s, double t);
+
+/*
+ * Coefficient c of sigma_xy = c phi^2 eta rate from the lubrication of affinely moving, affinely spinning (W = Omega_inf) equal spheres
+ * placed at random (g = 1 beyond contact), by quadrature over gap and direction. About 9.7 for gaps 1e-3 to 0.05.
+ */
+double theory_phi2_coefficient(double inner_gap, double outer_gap, double *error_estimate);
+
+/* Lubrication stress of a list of spheres in a periodic cell, brute force over all images within range: the sum of F (x) r over pairs. */
+void theory_crowd_stress(const struct theory_lubrication *law, int count, const struct theory_sphere *s,
+                         const double cell[3][3] /* rows A B C */, const double G[3][3], double stress[3][3]);
+
+#endif
