@@ -1,0 +1,122 @@
+/*
+ * What a check is. A check gets a case, asks the candidate (case folder out, numbers back), and records results: one per
+ * quantity judged. It never prints and never decides about the run; the gate turns results into lines and exit codes.
+ *
+ *     static void my_check(struct check_run *run)
+ *     {
+ *         struct question q = { .protocol = "forces", .scene = scene, .state = rows, .states = n };
+ *         char out[PATH_LENGTH];
+ *         if (!check_ask(run, "pairs", &q, out))
+ *             return;                                    // skip or failure is recorded already
+ *         if (!forces_read(..., why)) { check_garbage(run, why); return; }
+ *         check_error(run, INVARIANT, "third law", measured, expected, error, run->gate_case->tolerance,
+ *                     "force on 2 is %.3g of minus the force on 1", ratio);
+ *     }
+ *     const struct check my_checks[] = { { "my-check", my_check }, { NULL, NULL } };   // row in checks/families.c
+ *
+ * Statistical results: the check says only p (and what it could resolve). The gate calls the check a second time with
+ * attempt 2, a fresh seed and samples 4 when a p is below 1e-4, and fails only what is then below 1e-6/(statistical
+ * results of the suite). So a check must take its seed from run->seed and multiply its sample count by run->samples.
+ */
+#ifndef CHECK_H
+#define CHECK_H
+
+#include "candidate.h"
+#include "case.h"
+
+/* In order of severity: a case is as bad as its worst result. */
+enum verdict { VERDICT_PASS, VERDICT_SKIP, VERDICT_INCONCLUSIVE, VERDICT_FAIL };
+/* Invariants need no formula of ours and are judged first; model is agreement with what the candidate declares. */
+enum judgement { INVARIANT, MODEL };
+
+struct result {
+    char *what;                         /* short: "X_A", "third law of lubrication"; unique within its case */
+    enum judgement judgement;
+    double measured, expected;          /* the numbers for people; NaN where there is no single one */
+    double error, tolerance;            /* judged: error <= tolerance; NaN for statistical results */
+    double p;                           /* NaN for deterministic results */
+    double resolution, declared;        /* smallest relative fault this sample can see, and the one it must see; NaN: not said */
+    enum verdict verdict;
+    char *sentence;                     /* names the wrong term in a full sentence; shown unless passed */
+    char *picture;                      /* SVG file in the work folder, or null */
+    char *notes;                        /* longer text for the report, or null */
+};
+
+struct results { struct result *item; size_t count; };
+
+struct check_run {
+    const struct gate_case *gate_case;
+    const struct candidate *candidate;
+    char work[PATH_LENGTH];             /* own folder, empty at the start of each attempt */
+    unsigned seed;                      /* of this attempt: use it in scenes and for anything random */
+    int attempt;                        /* 1, or 2 for the rerun */
+    int samples;                        /* multiply sample counts by this: 1 or 4 */
+    struct results results;
+    double candidate_seconds;           /* wall time spent in the candidate so far */
+};
+
+struct check { const char *name; void (*run)(struct check_run *run); };
+const struct check *check_find(const char *name);   /* over all families (checks/families.c) */
+
+/* What the candidate is asked; borrowed, nothing is taken over. Null arrays: no such file. */
+struct question {
+    const char *protocol;               /* "forces", "noise", "run" */
+    json_t *scene;                      /* complete scene; "about" is added if missing */
+    const struct state_row *state;      size_t states;   /* rows of states.csv */
+    const struct contact_row *contact;  size_t contacts; /* rows of contacts.csv */
+    size_t draws;                       /* for "noise" */
+};
+
+/*
+ * Write the case folder run->work/<name>/case, start the candidate, leave its output folder in `out`. False if there is no
+ * answer to read: what happened has been recorded (exit 77 as skip, all else as failure) and the check should return.
+ */
+bool check_ask(struct check_run *run, const char *name, const struct question *q, char out[PATH_LENGTH]);
+
+/* The candidate answered with something unreadable: record a failure with this sentence (file and line are in it). */
+void check_garbage(struct check_run *run, const char *why);
+
+/* Progress of a long check ("draw 2000 of 20000"); shown only on a terminal. */
+void check_progress(struct check_run *run, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/*
+ * Recording. Each returns the new result, valid until the next one is recorded, so that picture and notes can be added
+ * (result_picture, result_notes). The sentence is formatted; it is needed only where the result may not pass.
+ */
+/* Deterministic: passes if error <= tolerance; a NaN fails. */
+struct result *check_error(struct check_run *run, enum judgement judgement, const char *what, double measured, double expected,
+                           double error, double tolerance, const char *sentence, ...) __attribute__((format(printf, 8, 9)));
+/* "Obeys": difference test. Inconclusive if what the sample can see (resolution) is coarser than what it must (declared). */
+struct result *check_p(struct check_run *run, enum judgement judgement, const char *what, double measured, double expected,
+                       double p, double resolution, double declared, const char *sentence, ...)
+    __attribute__((format(printf, 9, 10)));
+/*
+ * "Agrees": equivalence test. The interval measured +- 4 standard errors lies inside expected +- margin: pass; outside:
+ * fail; across an edge: inconclusive.
+ */
+struct result *check_interval(struct check_run *run, enum judgement judgement, const char *what, double measured,
+                              double standard_error, double expected, double margin, const char *sentence, ...)
+    __attribute__((format(printf, 8, 9)));
+struct result *check_skip(struct check_run *run, const char *what, const char *sentence, ...)
+    __attribute__((format(printf, 3, 4)));
+struct result *check_inconclusive(struct check_run *run, const char *what, const char *sentence, ...)
+    __attribute__((format(printf, 3, 4)));
+
+void result_picture(struct result *r, const char *svg_file_in_work_folder);
+void result_notes(struct result *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* --- for the gate --- */
+
+#define STAGE_ONE_ALARM 1e-4
+#define SUITE_ALARM_RATE 1e-6
+
+/* Runs the check with the two-stage rule; the results are final afterwards. `p_values`: those of the whole suite. */
+void check_judge(struct check_run *run, const struct check *check, int p_values, unsigned seed_offset);
+enum verdict results_verdict(const struct results *r);
+const struct result *results_worst(const struct results *r);
+const char *verdict_word(enum verdict v);           /* "pass", "skip", "inconclusive", "FAIL" */
+json_t *results_to_json(const struct results *r);
+bool results_from_json(const json_t *j, struct results *r);
+void results_free(struct results *r);
+
+#endif
