@@ -47,7 +47,7 @@ struct results { struct result *item; size_t count; };
 struct check_run {
     const struct gate_case *gate_case;
     const struct candidate *candidate;
-    char work[PATH_LENGTH];             /* own folder, empty at the start of each attempt */
+    char work[PATH_LENGTH];             /* own folder, empty at the start; a rerun asks in folders of its own */
     unsigned seed;                      /* of this attempt: use it in scenes and for anything random */
     int attempt;                        /* 1, or 2 for the rerun */
     int samples;                        /* multiply sample counts by this: 1 or 4 */

@@ -11,7 +11,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { WHY_LENGTH = 512, PATH_LENGTH = 1024 };
+enum { WHY_LENGTH = 1280, PATH_LENGTH = 1024 };
+
+/* Writes the reason of a failure and returns false, so that a failing function can end with it. */
+bool why_not(char why[WHY_LENGTH], const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* Numbers of a CSV file: `rows` x `columns` in the order in which the columns were asked for. */
 struct table {
@@ -61,6 +64,9 @@ bool stress_read(const char *path, size_t states, const char *origin, double **v
 json_t *scene_get(const json_t *scene, const char *path);
 double scene_number(const json_t *scene, const char *path, double otherwise);
 bool scene_set(json_t *scene, const char *path, json_t *value);
+
+/* "folder/name", cut off at the length of a path. */
+void path_join(char path[PATH_LENGTH], const char *folder, const char *name);
 
 /* Folders and files. `folder_make` makes parents too; `folder_remove` removes a folder and all in it. */
 bool folder_make(const char *path, char why[WHY_LENGTH]);

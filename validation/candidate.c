@@ -1,0 +1,182 @@
+/*
+ * Starting a candidate and surviving it. The child leads its own process group, so that a candidate that starts helpers
+ * (a shell, mpirun) dies as a whole; what it says goes to a file in place of a pipe, so that it can never block on us.
+ */
+#define _XOPEN_SOURCE 700 /* nftw */
+#include "candidate.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <ftw.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+static double now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static size_t folder_bytes; /* nftw has no way to hand a pointer through; the gate's workers are single-threaded */
+
+static int add_bytes(const char *path, const struct stat *status, int kind, struct FTW *where)
+{
+    (void)path;
+    (void)where;
+    if (kind == FTW_F)
+        folder_bytes += (size_t)status->st_size;
+    return 0;
+}
+
+static size_t folder_size(const char *path)
+{
+    folder_bytes = 0;
+    nftw(path, add_bytes, 16, FTW_PHYS);
+    return folder_bytes;
+}
+
+/* In the child: does not return. `exec` in the script makes the candidate itself, not a shell, receive our signals. */
+static void become_candidate(const struct candidate *c, const char *case_dir, const char *out_dir, const char *log)
+{
+    char script[PATH_LENGTH + 32];
+    snprintf(script, sizeof script, "exec %s \"$1\" \"$2\"", c->command);
+    const int in = open("/dev/null", O_RDONLY), out = open(log, O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    dup2(in, STDIN_FILENO);
+    dup2(out, STDOUT_FILENO);
+    dup2(out, STDERR_FILENO);
+    const struct rlimit file = { .rlim_cur = c->bytes, .rlim_max = c->bytes }, core = { 0, 0 };
+    setrlimit(RLIMIT_FSIZE, &file);
+    setrlimit(RLIMIT_CORE, &core);
+    signal(SIGINT, SIG_DFL);
+    execl("/bin/sh", "sh", "-c", script, "candidate", case_dir, out_dir, (char *)NULL);
+    _exit(127);
+}
+
+/* Waits until the child ends or breaks a limit; returns its wait status. Polls fast at first: most starts are short. */
+static int watch(const struct candidate *c, pid_t child, const char *out_dir, const char *log, double start,
+                 struct candidate_answer *answer)
+{
+    int status = 0;
+    double pause = 2e-4, sized = start;
+    while (waitpid(child, &status, WNOHANG) == 0) {
+        const double t = now();
+        struct stat said;
+        if (t - start > c->seconds)
+            answer->outcome = CANDIDATE_HUNG;
+        if (t - sized > 0.2) {
+            sized = t;
+            if (folder_size(out_dir) > c->bytes || (stat(log, &said) == 0 && (size_t)said.st_size > c->bytes))
+                answer->outcome = CANDIDATE_FLOODED;
+        }
+        if (answer->outcome != CANDIDATE_OK) {
+            kill(-child, SIGKILL);
+            waitpid(child, &status, 0);
+            break;
+        }
+        nanosleep(&(struct timespec){ .tv_nsec = (long)(1e9 * pause) }, NULL);
+        pause = pause < 0.02 ? 1.3 * pause : pause;
+    }
+    kill(-child, SIGKILL); /* helpers that outlived it */
+    return status;
+}
+
+static void read_tail(const char *log, char *said, size_t room)
+{
+    said[0] = '\0';
+    FILE *file = fopen(log, "rb");
+    if (!file)
+        return;
+    if (fseek(file, -(long)(room - 1), SEEK_END) != 0)
+        rewind(file);
+    const size_t n = fread(said, 1, room - 1, file);
+    said[n] = '\0';
+    for (size_t k = 0; k < n; k++) /* the report is XML and HTML: plain text only */
+        if ((unsigned char)said[k] < 32 && said[k] != '\n' && said[k] != '\t')
+            said[k] = '?';
+    fclose(file);
+}
+
+static void explain(const struct candidate *c, struct candidate_answer *a)
+{
+    const char *last = strrchr(a->said, '\n');
+    if (last && last[1] == '\0') { /* the last line that says something */
+        while (last > a->said && last[-1] != '\n')
+            last--;
+    } else {
+        last = last ? last + 1 : a->said;
+    }
+    const int n = (int)strcspn(last, "\n");
+    switch (a->outcome) {
+    case CANDIDATE_OK:
+        snprintf(a->message, sizeof a->message, "answered");
+        break;
+    case CANDIDATE_UNSUPPORTED:
+        snprintf(a->message, sizeof a->message, "does not support this (exit code 77)%s%.*s", n ? ": " : "", n, last);
+        break;
+    case CANDIDATE_FAILED:
+        snprintf(a->message, sizeof a->message, "candidate ended with exit code %d%s%s%.*s", a->detail,
+                 a->detail == 127 ? " (command not found?)" : "", n ? ": " : "", n, last);
+        break;
+    case CANDIDATE_CRASHED:
+        snprintf(a->message, sizeof a->message, "candidate crashed with signal %d (%s)", a->detail, strsignal(a->detail));
+        break;
+    case CANDIDATE_HUNG:
+        snprintf(a->message, sizeof a->message, "candidate hung: it was killed after %g s", c->seconds);
+        break;
+    case CANDIDATE_FLOODED:
+        snprintf(a->message, sizeof a->message, "candidate wrote more than %zu MB and was killed", c->bytes >> 20);
+        break;
+    }
+}
+
+void candidate_run(const struct candidate *c, const char *case_dir, const char *out_dir, struct candidate_answer *answer)
+{
+    char log[PATH_LENGTH + 8];
+    snprintf(log, sizeof log, "%s.log", out_dir);
+    *answer = (struct candidate_answer){ .outcome = CANDIDATE_OK };
+    const double start = now();
+    const pid_t child = fork();
+    if (child == 0) {
+        setpgid(0, 0);
+        become_candidate(c, case_dir, out_dir, log);
+    }
+    setpgid(child, child); /* in both processes: whichever comes first */
+    const int status = watch(c, child, out_dir, log, start, answer);
+    answer->seconds = now() - start;
+    read_tail(log, answer->said, sizeof answer->said);
+    if (answer->outcome == CANDIDATE_OK && WIFSIGNALED(status)) {
+        answer->detail = WTERMSIG(status);
+        answer->outcome = answer->detail == SIGXFSZ ? CANDIDATE_FLOODED : CANDIDATE_CRASHED;
+    } else if (answer->outcome == CANDIDATE_OK && WEXITSTATUS(status) != 0) {
+        answer->detail = WEXITSTATUS(status);
+        answer->outcome = answer->detail == 77 ? CANDIDATE_UNSUPPORTED : CANDIDATE_FAILED;
+    }
+    explain(c, answer);
+}
+
+void candidate_hash(const struct candidate *c, char hex[17])
+{
+    uint64_t hash = HASH_START;
+    for (const char *p = c->command; *p; p++)
+        hash = (hash ^ (unsigned char)*p) * UINT64_C(1099511628211);
+    const int n = (int)strcspn(c->command, " \t");
+    char path[PATH_LENGTH];
+    snprintf(path, sizeof path, "%.*s", n, c->command);
+    const char *folders = strchr(path, '/') ? NULL : getenv("PATH");
+    while (folders && *folders) { /* as the shell would find it */
+        const int length = (int)strcspn(folders, ":");
+        snprintf(path, sizeof path, "%.*s/%.*s", length, folders, n, c->command);
+        if (access(path, X_OK) == 0)
+            break;
+        folders += length + (folders[length] == ':');
+    }
+    snprintf(hex, 17, "%016llx", (unsigned long long)file_hash(path, hash));
+}

@@ -1,0 +1,283 @@
+/*
+ * Recording results and the one rule for alarms.
+ *
+ * A correct candidate gives p-values spread evenly over (0, 1), so some are small by chance. Stage 1 alarms at
+ * p < 1e-4; the check then runs again with a fresh seed and four times the samples, and only p < 1e-6/(number of
+ * statistical results in the suite) fails. Both together happen by chance less than once in 1e10 runs of the suite;
+ * a real fault that raised the first alarm comes back with p far smaller.
+ */
+#include "check.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static char *copy_text(const char *text)
+{
+    char *copy = malloc(strlen(text) + 1);
+    return strcpy(copy, text);
+}
+
+static char *format_text(const char *format, va_list arguments)
+{
+    char text[2 * WHY_LENGTH];
+    vsnprintf(text, sizeof text, format, arguments);
+    return copy_text(text);
+}
+
+static struct result *append(struct check_run *run, enum judgement judgement, const char *what, double measured,
+                             double expected)
+{
+    struct results *all = &run->results;
+    all->item = realloc(all->item, (all->count + 1) * sizeof *all->item);
+    struct result *r = &all->item[all->count++];
+    *r = (struct result){ .judgement = judgement, .measured = measured, .expected = expected, .error = NAN, .tolerance = NAN,
+                          .p = NAN, .resolution = NAN, .declared = NAN };
+    r->what = copy_text(what);
+    return r;
+}
+
+/* Fills the sentence of a result from the arguments of a variadic caller. */
+#define WITH_SENTENCE(r)                                                                                                    \
+    do {                                                                                                                    \
+        va_list arguments;                                                                                                  \
+        va_start(arguments, sentence);                                                                                      \
+        (r)->sentence = format_text(sentence, arguments);                                                                   \
+        va_end(arguments);                                                                                                  \
+    } while (0)
+
+struct result *check_error(struct check_run *run, enum judgement judgement, const char *what, double measured, double expected,
+                           double error, double tolerance, const char *sentence, ...)
+{
+    struct result *r = append(run, judgement, what, measured, expected);
+    WITH_SENTENCE(r);
+    r->error = error;
+    r->tolerance = tolerance;
+    r->verdict = error <= tolerance ? VERDICT_PASS : VERDICT_FAIL;
+    return r;
+}
+
+struct result *check_p(struct check_run *run, enum judgement judgement, const char *what, double measured, double expected,
+                       double p, double resolution, double declared, const char *sentence, ...)
+{
+    struct result *r = append(run, judgement, what, measured, expected);
+    WITH_SENTENCE(r);
+    r->p = p;
+    r->resolution = resolution;
+    r->declared = declared;
+    r->verdict = VERDICT_PASS; /* settled by check_judge; a sample too small to see what it must never passes */
+    if (isnan(p))
+        r->verdict = VERDICT_FAIL;
+    else if (resolution > declared)
+        r->verdict = VERDICT_INCONCLUSIVE;
+    return r;
+}
+
+struct result *check_interval(struct check_run *run, enum judgement judgement, const char *what, double measured,
+                              double standard_error, double expected, double margin, const char *sentence, ...)
+{
+    struct result *r = append(run, judgement, what, measured, expected);
+    WITH_SENTENCE(r);
+    const double distance = fabs(measured - expected), half_width = 4 * standard_error;
+    r->error = distance + half_width;
+    r->tolerance = margin;
+    r->resolution = half_width;
+    if (distance + half_width <= margin)
+        r->verdict = VERDICT_PASS;
+    else if (distance - half_width <= margin && isfinite(distance))
+        r->verdict = VERDICT_INCONCLUSIVE;
+    else
+        r->verdict = VERDICT_FAIL;
+    return r;
+}
+
+struct result *check_skip(struct check_run *run, const char *what, const char *sentence, ...)
+{
+    struct result *r = append(run, INVARIANT, what, NAN, NAN);
+    WITH_SENTENCE(r);
+    r->verdict = VERDICT_SKIP;
+    return r;
+}
+
+struct result *check_inconclusive(struct check_run *run, const char *what, const char *sentence, ...)
+{
+    struct result *r = append(run, INVARIANT, what, NAN, NAN);
+    WITH_SENTENCE(r);
+    r->verdict = VERDICT_INCONCLUSIVE;
+    return r;
+}
+
+void check_garbage(struct check_run *run, const char *why)
+{
+    check_error(run, INVARIANT, "readable answer", NAN, NAN, NAN, NAN, "candidate wrote garbage or too little: %s", why);
+}
+
+void result_picture(struct result *r, const char *svg_file_in_work_folder)
+{
+    free(r->picture);
+    r->picture = copy_text(svg_file_in_work_folder);
+}
+
+void result_notes(struct result *r, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    free(r->notes);
+    r->notes = format_text(format, arguments);
+    va_end(arguments);
+}
+
+static void free_result(struct result *r)
+{
+    free(r->what);
+    free(r->sentence);
+    free(r->picture);
+    free(r->notes);
+}
+
+void results_free(struct results *r)
+{
+    for (size_t k = 0; k < r->count; k++)
+        free_result(&r->item[k]);
+    free(r->item);
+    *r = (struct results){ 0 };
+}
+
+/* What matters most: a failed invariant before a failed model, among equals the one furthest beyond its limit. */
+static double badness(const struct result *r)
+{
+    const double excess = !isnan(r->p) ? -log10(r->p + 1e-300) / 6 : r->error / r->tolerance;
+    return 1e6 * r->verdict + (r->verdict == VERDICT_FAIL && r->judgement == INVARIANT ? 5e5 : 0)
+           + (isnan(excess) ? 4e5 : fmin(excess, 4e5));
+}
+
+const struct result *results_worst(const struct results *r)
+{
+    const struct result *worst = NULL;
+    for (size_t k = 0; k < r->count; k++)
+        if (!worst || badness(&r->item[k]) > badness(worst))
+            worst = &r->item[k];
+    return worst;
+}
+
+/* Pass only if something passed and nothing is worse than skipped; no result at all is no pass. */
+enum verdict results_verdict(const struct results *r)
+{
+    bool passed = false;
+    enum verdict worst = VERDICT_PASS;
+    for (size_t k = 0; k < r->count; k++) {
+        passed = passed || r->item[k].verdict == VERDICT_PASS;
+        if (r->item[k].verdict > worst)
+            worst = r->item[k].verdict;
+    }
+    if (r->count == 0)
+        return VERDICT_INCONCLUSIVE;
+    return worst == VERDICT_SKIP && passed ? VERDICT_PASS : worst;
+}
+
+const char *verdict_word(enum verdict v)
+{
+    static const char *const words[] = { "pass", "skip", "inconclusive", "FAIL" };
+    return words[v];
+}
+
+static const struct result *find(const struct results *all, const char *what)
+{
+    for (size_t k = 0; k < all->count; k++)
+        if (strcmp(all->item[k].what, what) == 0)
+            return &all->item[k];
+    return NULL;
+}
+
+static bool alarms(const struct result *r)
+{
+    return !isnan(r->p) && r->p < STAGE_ONE_ALARM;
+}
+
+/* The final verdict of a result that alarmed, from its rerun. Keeps what the rerun says; it saw four times as much. */
+static void settle(struct result *first, const struct result *again, double limit)
+{
+    const double p1 = first->p;
+    if (!again || isnan(again->p)) {
+        first->verdict = VERDICT_INCONCLUSIVE;
+        result_notes(first, "First p = %.2g is an alarm; the rerun gave no such result.", p1);
+        return;
+    }
+    first->p = again->p;
+    first->measured = again->measured;
+    first->expected = again->expected;
+    first->resolution = again->resolution;
+    free(first->sentence);
+    first->sentence = copy_text(again->sentence);
+    if (again->picture)
+        result_picture(first, again->picture);
+    first->verdict = again->p < limit ? VERDICT_FAIL : again->verdict;
+    result_notes(first, "First p = %.2g; rerun with a fresh seed and 4 times the samples p = %.2g, limit %.2g.%s%s", p1,
+                 again->p, limit, again->notes ? " " : "", again->notes ? again->notes : "");
+}
+
+/* Failures of the rerun that need no statistics (a crash, a broken identity) count as well. */
+static void keep_failures(struct check_run *run, const struct results *again)
+{
+    for (size_t k = 0; k < again->count; k++) {
+        const struct result *r = &again->item[k];
+        if (r->verdict != VERDICT_FAIL || !isnan(r->p))
+            continue;
+        const struct result *known = find(&run->results, r->what);
+        if (known && known->verdict == VERDICT_FAIL)
+            continue;
+        struct result *added = append(run, r->judgement, r->what, r->measured, r->expected);
+        added->error = r->error;
+        added->tolerance = r->tolerance;
+        added->verdict = r->verdict;
+        added->sentence = copy_text(r->sentence);
+        result_notes(added, "Seen in the rerun.");
+    }
+}
+
+/* A seed of its own for every case, attempt and offset; offset 0, attempt 1 is the seed written in the case. */
+static unsigned attempt_seed(unsigned seed, unsigned offset, int attempt)
+{
+    if (offset == 0 && attempt == 1)
+        return seed;
+    uint64_t z = ((uint64_t)seed << 32) + 2 * (uint64_t)offset + (uint64_t)attempt;
+    z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
+    z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
+    return (unsigned)(z >> 32);
+}
+
+static void run_attempt(struct check_run *run, const struct check *check, int attempt, unsigned seed_offset)
+{
+    run->attempt = attempt;
+    run->samples = attempt == 1 ? 1 : 4;
+    run->seed = attempt_seed(run->gate_case->seed, seed_offset, attempt);
+    check->run(run);
+}
+
+void check_judge(struct check_run *run, const struct check *check, int p_values, unsigned seed_offset)
+{
+    run_attempt(run, check, 1, seed_offset);
+    bool alarm = false;
+    int given = 0;
+    for (size_t k = 0; k < run->results.count; k++) {
+        alarm = alarm || alarms(&run->results.item[k]);
+        given += !isnan(run->results.item[k].p);
+    }
+    if (given > run->gate_case->p_values)
+        check_error(run, INVARIANT, "number of p-values", given, run->gate_case->p_values, given, run->gate_case->p_values,
+                    "the check gives more p-values than its case declares; this is a mistake in the suite");
+    if (!alarm)
+        return;
+    struct results first = run->results;
+    run->results = (struct results){ 0 };
+    run_attempt(run, check, 2, seed_offset);
+    struct results again = run->results;
+    run->results = first;
+    for (size_t k = 0; k < run->results.count; k++)
+        if (alarms(&run->results.item[k]))
+            settle(&run->results.item[k], find(&again, run->results.item[k].what), SUITE_ALARM_RATE / p_values);
+    keep_failures(run, &again);
+    results_free(&again);
+}
