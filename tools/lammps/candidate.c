@@ -117,13 +117,14 @@ static void write_physics(FILE *f, const struct task *t, int state, const char *
         fprintf(f, "pair_style gran/hooke %.17g 0 0 0 0 0\npair_coeff * *\n", t->normal_stiffness);
     else
         fprintf(f, "pair_style zero %.17g\npair_coeff * *\n", 2 * largest);
+    /* The skin costs neighbours, but LAMMPS also rebuilds its lists when a corner of the sheared cell has moved half of it. */
     fprintf(f, "neighbor %.17g bin\nneigh_modify every 1 delay 0 check yes\n"
                "fix flow all deform 1 xy erate %.17g remap v\n"
                "compute c all temp/deform\n"
                "compute pp all pressure NULL pair\ncompute pk all pressure c ke\n"
                "thermo_style custom step c_pp[1] c_pp[2] c_pp[3] c_pp[4] c_pp[5] c_pp[6] "
                "c_pk[1] c_pk[2] c_pk[3] c_pk[4] c_pk[5] c_pk[6]\nthermo_modify format float %%.17g lost error\n",
-            0.4 * smallest, t->rate);
+            fmax(0.3 * smallest, fmin(1.2 * smallest, 0.08 * t->edge[1])), t->rate);
     if (drag) {
         fprintf(f, "fix drag all langevin 0 0 %.17g 1", relaxation_time(t, 0));
         for (int k = 1; k < t->species_count; k++)

@@ -1,0 +1,242 @@
+/*
+ * Layer 6, sheared viscosities: the candidate against stock LAMMPS on the same scene.
+ *
+ * Both codes start from the same random spheres, made by the gate, and shear them; the first strain is thrown away and the rest
+ * averaged. A quantity is compared by the differences d_k = candidate - reference of the realisations k: starting alike, the two
+ * share most of their statistical fluctuation, so the mean of d_k is much sharper than either mean. (Contacts of soft spheres in
+ * a viscous fluid forget slowly: a difference grows by a factor e in a strain of about one. Two codes that take the same steps
+ * therefore stay together particle by particle for tens of strains; codes that take other steps do not, and then the spread of
+ * d_k says honestly how much less is known.)
+ *
+ * "Agrees" is an equivalence test: the interval mean(d) +- 4 standard errors (99 % for 8 realisations: Student's t for 7 degrees of
+ * freedom is 3.5) must lie within 5 % of the reference's value; for the normal stress differences, which are small and may
+ * change sign, within 5 % of its shear stress.
+ */
+#include "dense.h"
+#include "../packing.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { BINS = 12, COMPONENTS = 14 };
+enum { VISCOSITY, CONTACT, KINETIC, PRESSURE, N1, N2, DRAG, QUANTITIES };
+
+static const char *const quantity_name[QUANTITIES] = {
+    "relative viscosity", "contact viscosity", "kinetic viscosity", "pressure", "N1", "N2", "drag viscosity"
+};
+
+/* One run: averages over the steady window, and the contact viscosity in bins of strain over the whole run. */
+struct average { double mean[QUANTITIES], bin[BINS]; };
+
+bool dense_start(struct check_run *run, unsigned seed, struct dense_start *s)
+{
+    const json_t *par = run->gate_case->parameters;
+    json_t *shear = json_array_get(json_object_get(run->gate_case->scene, "shear"), 0);
+    const json_t *species = json_object_get(run->gate_case->scene, "species"), *counts = json_object_get(par, "counts");
+    struct packing_species mix[8];
+    const int kinds = (int)json_array_size(species);
+    char why[WHY_LENGTH];
+    *s = (struct dense_start){ .scene = json_deep_copy(run->gate_case->scene), .phi = scene_number(par, "phi", 0.5),
+                               .viscosity = scene_number(run->gate_case->scene, "fluid.viscosity", 1),
+                               .rate = scene_number(shear, "rate", 1) };
+    for (int k = 0; k < kinds && k < 8; k++) {
+        mix[k].radius = scene_number(json_array_get(species, (size_t)k), "radius", 1);
+        mix[k].count = (int)json_integer_value(json_array_get(counts, (size_t)k));
+        s->count += (size_t)mix[k].count;
+    }
+    s->row = calloc(s->count, sizeof *s->row);
+    s->edge = packing_edge(mix, kinds, s->phi);
+    if (!s->row || !packing_make(mix, kinds, s->edge, s->rate, seed, s->row, why)) {
+        check_error(run, INVARIANT, "start", NAN, NAN, NAN, NAN, "the gate itself failed: %s", why);
+        dense_start_free(s);
+        return false;
+    }
+    scene_set(s->scene, "box", json_pack("{s[fff] s[bbb]}", "lengths", s->edge, s->edge, s->edge, "periodic", 1, 1, 1));
+    scene_set(s->scene, "start.file", json_string("states.csv"));
+    return true;
+}
+
+void dense_start_free(struct dense_start *s)
+{
+    free(s->row);
+    json_decref(s->scene);
+}
+
+bool dense_ask_both(struct check_run *run, const char *name, const struct dense_start *s, char out[2][PATH_LENGTH])
+{
+    const struct candidate *own = run->candidate;
+    struct candidate reference = *own;
+    const struct question q = { .protocol = "run", .scene = s->scene, .state = s->row, .states = s->count };
+    const double seconds = run->candidate_seconds;
+    char label[64];
+    if (!check_ask(run, name, &q, out[0]))
+        return false;
+    const double after = run->candidate_seconds;
+    reference.command = getenv("GATE_REFERENCE") ? getenv("GATE_REFERENCE") : "build/lammps-candidate";
+    snprintf(label, sizeof label, "reference-%s", name);
+    run->candidate = &reference;
+    const bool good = check_ask(run, label, &q, out[1]);
+    run->candidate = own;
+    run->candidate_seconds = after > seconds ? after : seconds;
+    if (!good && run->results.count)    /* a missing reference is an error of the set-up, never a skip */
+        run->results.item[run->results.count - 1].verdict = VERDICT_FAIL;
+    return good;
+}
+
+/* Sum over the origins that matter here; column numbers are those of the list in read_average. */
+static bool read_average(struct check_run *run, const struct dense_start *s, const char *out, double discard, double strain,
+                         struct average *a)
+{
+    static const char *const columns = "step,time,contact_normal_xx,contact_normal_xy,contact_normal_yx,contact_normal_yy,"
+                                       "contact_normal_zz,kinetic_xx,kinetic_xy,kinetic_yx,kinetic_yy,kinetic_zz,drag_xy,drag_yx";
+    char path[PATH_LENGTH], why[WHY_LENGTH];
+    struct table t;
+    path_join(path, out, "stress.csv");
+    if (!table_read(path, columns, &t, why)) {
+        check_garbage(run, why);
+        return false;
+    }
+    const double unit = s->viscosity * s->rate, size = fabs(unit);
+    int rows = 0, in_bin[BINS] = { 0 };
+    memset(a, 0, sizeof *a);
+    for (size_t r = 0; r < t.rows; r++) {
+        double v[COMPONENTS];
+        for (size_t c = 0; c < COMPONENTS; c++)
+            v[c] = table_at(&t, r, c);
+        const double now = v[1] * fabs(s->rate), contact = (v[3] + v[4]) / 2 / unit, kinetic = (v[8] + v[9]) / 2 / unit;
+        const double xx = v[2] + v[7], yy = v[5] + v[10], zz = v[6] + v[11], drag = (v[12] + v[13]) / 2 / unit;
+        const int bin = (int)(now / strain * BINS);
+        if (bin >= 0 && bin < BINS) {
+            a->bin[bin] += contact;
+            in_bin[bin]++;
+        }
+        if (now <= discard)
+            continue;
+        const double sample[QUANTITIES] = { 1 + drag + contact + kinetic, contact, kinetic, -(xx + yy + zz) / 3 / size,
+                                            (xx - yy) / size, (yy - zz) / size, drag };
+        for (int q = 0; q < QUANTITIES; q++)
+            a->mean[q] += sample[q];
+        rows++;
+    }
+    table_free(&t);
+    for (int q = 0; q < QUANTITIES; q++)
+        a->mean[q] /= rows;
+    for (int b = 0; b < BINS; b++)
+        a->bin[b] = in_bin[b] ? a->bin[b] / in_bin[b] : NAN;
+    if (rows == 0)
+        check_garbage(run, "stress.csv ends before the flow is steady");
+    return rows > 0;
+}
+
+/* Mean over realisations and its standard error of value(k) = plus[k] - minus[k] (`minus` may be null). */
+static double mean_of(const struct average *plus, const struct average *minus, size_t offset, int count, double *standard_error)
+{
+    double sum = 0, squares = 0;
+    for (int k = 0; k < count; k++)
+        sum += ((const double *)&plus[2 * k])[offset] - (minus ? ((const double *)&minus[2 * k])[offset] : 0);
+    for (int k = 0; k < count; k++) {
+        const double v = ((const double *)&plus[2 * k])[offset] - (minus ? ((const double *)&minus[2 * k])[offset] : 0);
+        squares += (v - sum / count) * (v - sum / count);
+    }
+    *standard_error = sqrt(squares / (count - 1) / count);
+    return sum / count;
+}
+
+/* Contact viscosity against strain, both codes, and the steady averages, with error bars from the realisations. */
+static void draw(struct check_run *run, struct result *r, const struct average *a, int count, double discard, double strain)
+{
+    char path[PATH_LENGTH], command[PATH_LENGTH + 64];
+    double error[2], value[2];
+    path_join(path, run->work, "dense.gnuplot");
+    FILE *f = fopen(path, "w");
+    if (!f)
+        return;
+    fprintf(f, "set terminal svg size 960,360 enhanced font 'sans,12'\nset output 'dense.svg'\nset multiplot layout 1,2\n"
+               "$bins << end\n");
+    for (int b = 0; b < BINS; b++) {
+        for (int code = 0; code < 2; code++)
+            value[code] = mean_of(a + code, NULL, QUANTITIES + (size_t)b, count, &error[code]);
+        fprintf(f, "%g %g %g %g %g\n", (b + 0.5) * strain / BINS, value[0], error[0], value[1], error[1]);
+    }
+    fprintf(f, "end\n$steady << end\n");
+    for (int q = 0; q < DRAG; q++) {
+        for (int code = 0; code < 2; code++)
+            value[code] = mean_of(a + code, NULL, (size_t)q, count, &error[code]);
+        fprintf(f, "%d \"%s\" %g %g %g %g\n", q, quantity_name[q], value[0], error[0], value[1], error[1]);
+    }
+    fprintf(f, "end\nset xlabel 'strain'\nset ylabel 'contact viscosity / viscosity of the fluid'\nset yrange [0:*]\nset key bottom right\n"
+               "set arrow from %g, graph 0 to %g, graph 1 nohead dashtype 2 lc 'gray'\n"
+               "plot $bins using 1:2:3 with yerrorlines pt 7 ps 0.6 lc 'black' title 'candidate', \\\n"
+               "     $bins using ($1+%g):4:5 with yerrorlines pt 6 ps 0.9 lc 'red' title 'LAMMPS (shifted sideways)'\n"
+               "unset arrow\nunset xlabel\nset ylabel 'steady average / (viscosity of the fluid x rate)'\nset yrange [*:*]\nset xrange [-0.5:%d.5]\n"
+               "set xtics rotate by -25\nset key top right\nset xzeroaxis\n"
+               "plot $steady using 1:3:4:xtic(2) with yerrorbars pt 7 ps 0.6 lc 'black' title 'candidate', \\\n"
+               "     $steady using ($1+0.15):5:6 with yerrorbars pt 6 ps 0.9 lc 'red' title 'LAMMPS'\n",
+            discard, discard, strain / BINS / 5, DRAG - 1);
+    fclose(f);
+    snprintf(command, sizeof command, "cd '%s' && gnuplot dense.gnuplot 2>gnuplot.log", run->work);
+    if (system(command) == 0)
+        result_picture(r, "dense.svg");
+}
+
+static void judge(struct check_run *run, const struct dense_start *s, const struct average *a, int count, double margin)
+{
+    double error, own_error, reference_error, shear_stress = 0;
+    for (int k = 0; k < count; k++)
+        shear_stress += fabs(a[2 * k + 1].mean[VISCOSITY]) / count;
+    for (int q = 0; q < DRAG; q++) {
+        const double difference = mean_of(a, a + 1, (size_t)q, count, &error);
+        const double reference = mean_of(a + 1, NULL, (size_t)q, count, &reference_error);
+        const double own = mean_of(a, NULL, (size_t)q, count, &own_error);
+        const double scale = q == N1 || q == N2 ? shear_stress : fabs(reference);
+        struct result *r = check_interval(run, MODEL, quantity_name[q], reference + difference, error, reference, margin * scale,
+                                          "%s is %.4g +- %.2g in the candidate and %.4g +- %.2g in LAMMPS, from the same %d starts",
+                                          quantity_name[q], own, own_error, reference, reference_error, count);
+        result_notes(r, "candidate %.5g +- %.2g, LAMMPS %.5g +- %.2g (one standard error from %d realisations); paired difference "
+                     "%.2g +- %.2g, margin %.2g. In units of viscosity x rate.",
+                     own, own_error, reference, reference_error, count, difference, error, margin * scale);
+    }
+    const double drag = mean_of(a, NULL, DRAG, count, &error), expected = 2.5 * s->phi;
+    check_error(run, MODEL, quantity_name[DRAG], drag, expected, fabs(drag / expected - 1), 1e-9,
+                "the one-body stresslets add %.9g to the relative viscosity; Einstein's (5/2) phi is %.9g", drag, expected);
+}
+
+void dense_equivalence(struct check_run *run)
+{
+    const json_t *par = run->gate_case->parameters;
+    const int count = (int)scene_number(par, "realisations", 8) * run->samples;
+    const double discard = scene_number(par, "discard", 2), strain = scene_number(par, "strain", 12);
+    struct average *a = calloc(2 * (size_t)count, sizeof *a);   /* candidate and reference in turn */
+    struct dense_start s = { 0 };
+    bool good = a != NULL;
+    for (int k = 0; good && k < count; k++) {
+        char name[32], out[2][PATH_LENGTH];
+        check_progress(run, "realisation %d of %d", k + 1, count);
+        dense_start_free(&s);
+        if (!dense_start(run, run->seed * 1000 + (unsigned)k, &s)) {
+            s = (struct dense_start){ 0 };
+            good = false;
+            break;
+        }
+        scene_set(s.scene, "run", json_pack("{sf}", "strain", strain));
+        scene_set(s.scene, "output.stress.every", json_integer((json_int_t)scene_number(par, "every", 20)));
+        snprintf(name, sizeof name, "realisation-%d", k);
+        good = dense_ask_both(run, name, &s, out);
+        for (int code = 0; good && code < 2; code++)
+            good = read_average(run, &s, out[code], discard, strain, &a[2 * k + code]);
+    }
+    if (good) {
+        judge(run, &s, a, count, run->gate_case->tolerance);
+        draw(run, &run->results.item[0], a, count, discard, strain);
+    }
+    dense_start_free(&s);
+    free(a);
+}
+
+const struct check dense_checks[] = {
+    { "dense-equivalence", dense_equivalence },
+    { "dense-path", dense_path },
+    { NULL, NULL },
+};

@@ -1,0 +1,27 @@
+/* Layer 6: what its checks share. Two codes, the candidate and a reference (stock LAMMPS), run one scene from one start. */
+#ifndef DENSE_H
+#define DENSE_H
+
+#include "check.h"
+
+struct dense_start {
+    struct state_row *row;
+    size_t count;
+    double edge, viscosity, rate, phi;
+    json_t *scene;          /* ready to run but for its length and its output */
+};
+
+/* The case's spheres at random without overlap, moving with the flow. Records a failure and returns false if there are none. */
+bool dense_start(struct check_run *run, unsigned seed, struct dense_start *s);
+void dense_start_free(struct dense_start *s);
+
+/*
+ * Run the scene of `s` in the candidate and in the reference: the command in GATE_REFERENCE, else build/lammps-candidate. False
+ * if either has no answer; it has been recorded then. A reference that is missing or refuses is a failure of the set-up.
+ */
+bool dense_ask_both(struct check_run *run, const char *name, const struct dense_start *s, char out[2][PATH_LENGTH]);
+
+void dense_equivalence(struct check_run *run);
+void dense_path(struct check_run *run);
+
+#endif

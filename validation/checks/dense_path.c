@@ -1,0 +1,140 @@
+/*
+ * Layer 6, a short path: the candidate against stock LAMMPS, particle by particle and stress by stress.
+ *
+ * Both start from the same random spheres and take the same steps of velocity Verlet in LAMMPS's convention: a half kick with
+ * the last forces, a drift, forces from the new positions (cell and flow at the new time) and the HALF-STEP velocities, a half
+ * kick. Then nothing but rounding is left between them, which grows by a factor e in a strain of about one. Two things are
+ * commonly done otherwise, and show here: the cell lags one step behind (LAMMPS itself, unless it is told to start one
+ * step ahead as our adapter does): positions differ by rate x edge x dt in the first step in which a pair meets across the face;
+ * the drag uses the velocity of another moment: everything differs by O(dt) from the start.
+ */
+#include "dense.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const path_columns = "step,id,x,y,z,ux,uy,uz,wx,wy,wz";
+
+/* Largest differences of positions (radii), velocities (rate x edge) and spins (rate) at a step; false if rows are missing. */
+static bool compare_states(const struct table t[2], const struct dense_start *s, double radius, double step, double worst[3])
+{
+    double *found[2];
+    bool good = true;
+    for (int code = 0; code < 2; code++) {
+        found[code] = calloc(s->count * 10, sizeof(double));
+        for (size_t r = 0; found[code] && r < t[code].rows; r++) {
+            const double id = table_at(&t[code], r, 1);
+            if (table_at(&t[code], r, 0) != step || id < 1 || id > (double)s->count)
+                continue;
+            double *row = found[code] + 10 * ((size_t)id - 1);
+            row[9] = 1;
+            for (size_t c = 0; c < 9; c++)
+                row[c] = table_at(&t[code], r, 2 + c);
+        }
+        for (size_t i = 0; i < s->count; i++)
+            good = good && found[code] && found[code][10 * i + 9] > 0;
+    }
+    const double unit[3] = { radius, fabs(s->rate) * s->edge, fabs(s->rate) };
+    for (int what = 0; good && what < 3; what++) {
+        worst[what] = 0;
+        for (size_t i = 0; i < s->count; i++)
+            for (int k = 3 * what; k < 3 * what + 3; k++)
+                worst[what] = fmax(worst[what], fabs(found[0][10 * i + (size_t)k] - found[1][10 * i + (size_t)k]) / unit[what]);
+    }
+    free(found[0]);
+    free(found[1]);
+    return good;
+}
+
+/* Largest difference of any component of one origin over all steps, relative to the largest component of the reference. */
+static bool compare_stress(struct check_run *run, char out[2][PATH_LENGTH], const char *origin, double *error)
+{
+    char columns[512] = "step", path[PATH_LENGTH], why[WHY_LENGTH];
+    for (int k = 0; k < 9; k++)
+        snprintf(columns + strlen(columns), sizeof columns - strlen(columns), ",%s_%c%c", origin, "xyz"[k / 3], "xyz"[k % 3]);
+    struct table t[2];
+    for (int code = 0; code < 2; code++) {
+        path_join(path, out[code], "stress.csv");
+        if (!table_read(path, columns, &t[code], why)) {
+            check_garbage(run, why);
+            if (code)
+                table_free(&t[0]);
+            return false;
+        }
+    }
+    const bool good = table_expect_rows(&t[0], t[1].rows, why);
+    double largest = 0, difference = 0;
+    for (size_t r = 0; good && r < t[1].rows; r++)
+        for (size_t c = 1; c < 10; c++) {
+            largest = fmax(largest, fabs(table_at(&t[1], r, c)));
+            difference = fmax(difference, fabs(table_at(&t[0], r, c) - table_at(&t[1], r, c)));
+        }
+    if (!good)
+        check_garbage(run, why);
+    *error = difference / largest;
+    table_free(&t[0]);
+    table_free(&t[1]);
+    return good;
+}
+
+static void judge_states(struct check_run *run, const struct dense_start *s, char out[2][PATH_LENGTH], double steps, double every)
+{
+    static const char *const what[3] = { "positions", "velocities", "spins" };
+    const double tolerance = run->gate_case->tolerance;
+    const double radius = scene_number(json_array_get(json_object_get(s->scene, "species"), 0), "radius", 1);
+    struct table t[2];
+    char path[PATH_LENGTH], why[WHY_LENGTH], growth[512] = "";
+    double worst[3] = { 0 };
+    for (int code = 0; code < 2; code++) {
+        path_join(path, out[code], "trajectory.csv");
+        if (!table_read(path, path_columns, &t[code], why)) {
+            check_garbage(run, why);
+            if (code)
+                table_free(&t[0]);
+            return;
+        }
+    }
+    bool good = true;
+    for (double step = 0; good && step <= steps; step += every) {
+        good = compare_states(t, s, radius, step, worst);
+        snprintf(growth + strlen(growth), sizeof growth - strlen(growth), "%s%.1g at step %.0f", step > 0 ? ", " : "", worst[0], step);
+    }
+    table_free(&t[0]);
+    table_free(&t[1]);
+    if (!good) {
+        check_garbage(run, "trajectory.csv lacks a particle at one of the steps asked for");
+        return;
+    }
+    for (int k = 0; k < 3; k++) {
+        struct result *r = check_error(run, MODEL, what[k], worst[k], 0, worst[k], tolerance,
+                                       "%s differ from LAMMPS's by %.2g after %.0f steps (positions in radii: %s); a cell that lags one step "
+                                       "or a drag at another moment's velocity would do that", what[k], worst[k], steps, growth);
+        result_notes(r, "largest difference of positions, in radii of the first species: %s", growth);
+    }
+}
+
+void dense_path(struct check_run *run)
+{
+    const json_t *par = run->gate_case->parameters;
+    const double steps = scene_number(par, "steps", 1500), every = scene_number(par, "every", 500);
+    struct dense_start s;
+    char out[2][PATH_LENGTH];
+    if (!dense_start(run, run->seed, &s))
+        return;
+    scene_set(s.scene, "run", json_pack("{sI}", "steps", (json_int_t)steps));
+    scene_set(s.scene, "output.states.every", json_integer((json_int_t)every));
+    scene_set(s.scene, "output.stress.every", json_integer((json_int_t)every / 10));
+    if (dense_ask_both(run, "path", &s, out)) {
+        const bool friction = scene_number(s.scene, "forces.contact.friction", 0) > 0;
+        const char *const origin[3] = { "contact_normal", "kinetic", friction ? "contact_tangential" : NULL };
+        double error;
+        judge_states(run, &s, out, steps, every);
+        for (int o = 0; o < 3; o++)
+            if (origin[o] && compare_stress(run, out, origin[o], &error))
+                check_error(run, MODEL, origin[o], error, 0, error, run->gate_case->tolerance,
+                            "the %s stress differs from LAMMPS's by %.2g of its largest component along the path", origin[o], error);
+    }
+    dense_start_free(&s);
+}
