@@ -18,6 +18,23 @@
 #include <time.h>
 #include <unistd.h>
 
+static volatile sig_atomic_t running; /* the candidate's process group, 0: none */
+
+static void stop_candidate(int signal_number)
+{
+    if (running > 0)
+        kill(-(pid_t)running, SIGKILL);
+    _exit(128 + signal_number);
+}
+
+void candidate_stop_with_us(void)
+{
+    struct sigaction action = { .sa_handler = stop_candidate };
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    sigaction(SIGHUP, &action, NULL);
+}
+
 static double now(void)
 {
     struct timespec t;
@@ -55,7 +72,6 @@ static void become_candidate(const struct candidate *c, const char *case_dir, co
     const struct rlimit file = { .rlim_cur = c->bytes, .rlim_max = c->bytes }, core = { 0, 0 };
     setrlimit(RLIMIT_FSIZE, &file);
     setrlimit(RLIMIT_CORE, &core);
-    signal(SIGINT, SIG_DFL);
     execl("/bin/sh", "sh", "-c", script, "candidate", case_dir, out_dir, (char *)NULL);
     _exit(127);
 }
@@ -99,7 +115,7 @@ static void read_tail(const char *log, char *said, size_t room)
     const size_t n = fread(said, 1, room - 1, file);
     said[n] = '\0';
     for (size_t k = 0; k < n; k++) /* the report is XML and HTML: plain text only */
-        if ((unsigned char)said[k] < 32 && said[k] != '\n' && said[k] != '\t')
+        if (((unsigned char)said[k] < 32 && said[k] != '\n' && said[k] != '\t') || (unsigned char)said[k] > 126)
             said[k] = '?';
     fclose(file);
 }
@@ -149,7 +165,9 @@ void candidate_run(const struct candidate *c, const char *case_dir, const char *
         become_candidate(c, case_dir, out_dir, log);
     }
     setpgid(child, child); /* in both processes: whichever comes first */
+    running = child;
     const int status = watch(c, child, out_dir, log, start, answer);
+    running = 0;
     answer->seconds = now() - start;
     read_tail(log, answer->said, sizeof answer->said);
     if (answer->outcome == CANDIDATE_OK && WIFSIGNALED(status)) {

@@ -33,6 +33,9 @@ struct candidate_answer {
 /* Both folders must exist. */
 void candidate_run(const struct candidate *c, const char *case_dir, const char *out_dir, struct candidate_answer *answer);
 
+/* From now on SIGINT, SIGTERM and SIGHUP end this process and the candidate it is running. */
+void candidate_stop_with_us(void);
+
 /* Hash of the program file behind the first word of the command (found in PATH) and of the command line; 16 hex digits. */
 void candidate_hash(const struct candidate *c, char hex[17]);
 

@@ -1,0 +1,286 @@
+/*
+ * gate: judges any program that computes suspension physics, through files (docs/formats.md). It never links the solver.
+ *
+ * This file is the command line: which cases, in which order, against which candidate, and what is written where.
+ */
+#define _XOPEN_SOURCE 700 /* realpath, readlink */
+#include "run.h"
+#include "terminal.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { EXIT_USAGE = 2 };
+
+static const char help[] =
+    "gate: judges a program that computes suspension physics, through files\n"
+    "\n"
+    "  gate run --candidate COMMAND [options]   ask the cases, print verdicts, write a report\n"
+    "  gate list [options]                      the cases that `run` would ask\n"
+    "\n"
+    "  --candidate COMMAND   called as COMMAND CASE_DIR OUT_DIR (docs/formats.md)\n"
+    "  --layer LAYER         only this layer, by number or name: 1 pair, 2 noise, 3 single, 4 two-bodies, 5 dilute,\n"
+    "                        6 dense, 7 published; several separated by commas\n"
+    "  --case NAME           only these cases, separated by commas\n"
+    "  --needs PHYSICS       only cases that need this: contact, drag, lubrication, ...\n"
+    "  --tier TIER           fast (default), standard, full; each includes the ones before it\n"
+    "  --jobs N              worker processes (default 1)\n"
+    "  --seed-offset K       other seeds for everything random (default 0: those written in the cases)\n"
+    "  --report DIR          index.html and junit.xml (default build/report)\n"
+    "  --work DIR            what candidates are given and answer (default build/gate)\n"
+    "  --suite-dir DIR       the folder that holds cases/ and flags.json (default: validation/, found from the program)\n"
+    "\n"
+    "Exit codes: 0 pass, 1 fail, 2 wrong usage, 3 only inconclusive, 77 nothing supported.\n";
+
+struct options {
+    const char *candidate, *layers, *cases, *needs, *report, *work;
+    char suite_dir[PATH_LENGTH];
+    enum tier tier;
+    int jobs;
+    unsigned seed_offset;
+};
+
+static int usage(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+static int usage(const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    fprintf(stderr, "gate: ");
+    vfprintf(stderr, format, arguments);
+    fprintf(stderr, "\n");
+    va_end(arguments);
+    return EXIT_USAGE;
+}
+
+/* validation/ beside the folder of the program (build/gate), or below the current folder. */
+static void find_suite(char folder[PATH_LENGTH])
+{
+    char program[PATH_LENGTH], guess[PATH_LENGTH];
+    const ssize_t n = readlink("/proc/self/exe", program, sizeof program - 1);
+    snprintf(folder, PATH_LENGTH, "validation");
+    for (ssize_t k = n; k > 0; k--) {
+        if (program[k] != '/' && k != n)
+            continue;
+        program[k] = '\0';
+        path_join(guess, program, "validation/cases");
+        if (access(guess, R_OK) == 0) {
+            path_join(folder, program, "validation");
+            return;
+        }
+    }
+}
+
+static bool whole_number(const char *text, long least, long most, long *value)
+{
+    char *end;
+    *value = strtol(text, &end, 10);
+    return *text && *end == '\0' && *value >= least && *value <= most;
+}
+
+/* 0, or an exit code after a message. */
+static int parse_option(struct options *o, const char *name, const char *value)
+{
+    long n;
+    if (!value)
+        return usage("%s needs a value", name);
+    if (strcmp(name, "--candidate") == 0)
+        o->candidate = value;
+    else if (strcmp(name, "--layer") == 0)
+        o->layers = value;
+    else if (strcmp(name, "--case") == 0)
+        o->cases = value;
+    else if (strcmp(name, "--needs") == 0)
+        o->needs = value;
+    else if (strcmp(name, "--report") == 0)
+        o->report = value;
+    else if (strcmp(name, "--work") == 0)
+        o->work = value;
+    else if (strcmp(name, "--suite-dir") == 0)
+        snprintf(o->suite_dir, sizeof o->suite_dir, "%s", value);
+    else if (strcmp(name, "--tier") == 0)
+        return tier_parse(value, &o->tier) ? 0 : usage("there is no tier '%s'; there are fast, standard, full", value);
+    else if (strcmp(name, "--jobs") == 0) {
+        if (!whole_number(value, 1, 256, &n))
+            return usage("--jobs '%s' is no whole number from 1 to 256", value);
+        o->jobs = (int)n;
+    } else if (strcmp(name, "--seed-offset") == 0) {
+        if (!whole_number(value, 0, 2147483647, &n))
+            return usage("--seed-offset '%s' is no whole number from 0 to 2147483647", value);
+        o->seed_offset = (unsigned)n;
+    } else
+        return usage("unknown option '%s'; see gate --help", name);
+    return 0;
+}
+
+/* Whether `word` is one of the comma-separated `list`. */
+static bool in_list(const char *list, const char *word)
+{
+    for (const size_t length = strlen(word); *list;) {
+        const size_t n = strcspn(list, ",");
+        if (n == length && strncmp(list, word, n) == 0)
+            return true;
+        list += n + (list[n] == ',');
+    }
+    return false;
+}
+
+static bool wanted(const struct options *o, const struct gate_case *c)
+{
+    char number[2] = { (char)('0' + c->layer), '\0' };
+    return c->tier <= o->tier && (!o->cases || in_list(o->cases, c->name)) && (!o->needs || case_lists(c->needs, o->needs))
+           && (!o->layers || in_list(o->layers, layer_name(c->layer)) || in_list(o->layers, number));
+}
+
+/* Every name in --layer and --case must mean something: a typing error must not make an empty run look like a pass. */
+static int check_names(const struct options *o, const struct suite_of_cases *suite)
+{
+    char word[128];
+    enum layer layer;
+    for (const char *at = o->layers ? o->layers : ""; *at; at += strcspn(at, ","), at += *at == ',') {
+        snprintf(word, sizeof word, "%.*s", (int)strcspn(at, ","), at);
+        if (!layer_parse(word, &layer))
+            return usage("there is no layer '%s'; see gate --help", word);
+    }
+    for (const char *at = o->cases ? o->cases : ""; *at; at += strcspn(at, ","), at += *at == ',') {
+        bool known = false;
+        snprintf(word, sizeof word, "%.*s", (int)strcspn(at, ","), at);
+        for (size_t k = 0; k < suite->count; k++)
+            known = known || strcmp(suite->item[k].name, word) == 0;
+        if (!known)
+            return usage("there is no case '%s'; see gate list --tier full", word);
+    }
+    return 0;
+}
+
+/* Layers without a chosen case, and how many cases were left out of the others. */
+static void say_not_tested(const struct options *o, const struct suite_of_cases *suite, size_t chosen, char *text, size_t room)
+{
+    text[0] = '\0';
+    for (int layer = LAYER_PAIR; layer <= LAYER_PUBLISHED; layer++) {
+        bool tested = false;
+        for (size_t k = 0; k < suite->count; k++)
+            tested = tested || ((int)suite->item[k].layer == layer && wanted(o, &suite->item[k]));
+        const size_t used = strlen(text);
+        if (!tested)
+            snprintf(text + used, room - used, "%s%s", used ? ", " : "layers ", layer_name((enum layer)layer));
+    }
+    const size_t used = strlen(text);
+    if (chosen < suite->count)
+        snprintf(text + used, room - used, "%s%zu more cases left out by tier (%s) or choice", used ? "; " : "",
+                 suite->count - chosen, tier_name(o->tier));
+    else if (used == 0)
+        snprintf(text, room, "nothing was left out");
+}
+
+static int list_cases(const struct gate_case **chosen, size_t count)
+{
+    for (size_t k = 0; k < count; k++)
+        printf("%-10s %-28s %-8s %s\n", layer_name(chosen[k]->layer), chosen[k]->name, tier_name(chosen[k]->tier),
+               chosen[k]->about);
+    return 0;
+}
+
+static bool write_reports(const struct options *o, const struct provenance *p, const struct finished_case *done, size_t count,
+                          char why[WHY_LENGTH])
+{
+    char junit[PATH_LENGTH], html[PATH_LENGTH], flags[PATH_LENGTH];
+    path_join(junit, o->report, "junit.xml");
+    path_join(html, o->report, "index.html");
+    path_join(flags, o->suite_dir, "flags.json");
+    return folder_make(o->report, why) && report_junit(junit, p, done, count, why)
+           && report_html(html, p, done, count, flags, why);
+}
+
+static int run_cases(const struct options *o, const struct suite_of_cases *suite, const struct gate_case **chosen, size_t count)
+{
+    char why[WHY_LENGTH], *work;
+    if (!folder_make(o->work, why))
+        return usage("%s", why);
+    work = realpath(o->work, NULL); /* absolute: a candidate may change its folder */
+    struct run_plan plan = { .gate_case = chosen, .count = count, .work = work, .jobs = o->jobs, .p_values = suite->p_values,
+                             .seed_offset = o->seed_offset };
+    plan.candidate = (struct candidate){ .command = o->candidate, .bytes = (size_t)1 << 30 };
+
+    struct provenance p = { .suite_version = GATE_VERSION, .candidate = o->candidate, .level = "A", .precision = "double",
+                            .seed_offset = o->seed_offset };
+    snprintf(p.suite_hash, sizeof p.suite_hash, "%016llx", (unsigned long long)suite->hash);
+    candidate_hash(&plan.candidate, p.candidate_hash);
+    say_not_tested(o, suite, count, p.not_tested, sizeof p.not_tested);
+    const time_t date = time(NULL);
+    strftime(p.date, sizeof p.date, "%Y-%m-%dT%H:%M:%SZ", gmtime(&date));
+
+    struct finished_case *done = calloc(count, sizeof *done);
+    struct timespec start, end;
+    clock_gettime(CLOCK_MONOTONIC, &start);
+    terminal_open(&p);
+    run_all(&plan, done, terminal_case);
+    clock_gettime(CLOCK_MONOTONIC, &end);
+    p.seconds = (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
+
+    const struct tally tally = report_tally(done, count);
+    const bool written = write_reports(o, &p, done, count, why);
+    if (written)
+        printf("report: %s/index.html\n", o->report);
+    else
+        fprintf(stderr, "gate: %s\n", why);
+    terminal_close(done, count, p.seconds, tally);
+    for (size_t k = 0; k < count; k++)
+        results_free(&done[k].results);
+    free(done);
+    free(work);
+    return written ? report_exit_code(tally) : EXIT_USAGE;
+}
+
+static int with_suite(const char *verb, const struct options *o)
+{
+    struct suite_of_cases suite;
+    char why[WHY_LENGTH], folder[PATH_LENGTH];
+    path_join(folder, o->suite_dir, "cases");
+    if (!cases_load(folder, &suite, why))
+        return usage("%s", why);
+    int code = check_names(o, &suite);
+    const struct gate_case **chosen = calloc(suite.count, sizeof *chosen);
+    size_t count = 0;
+    for (size_t k = 0; k < suite.count && code == 0; k++) {
+        if (wanted(o, &suite.item[k]))
+            chosen[count++] = &suite.item[k];
+        if (!check_find(suite.item[k].check))
+            code = usage("%s/case.json: there is no check '%s'", suite.item[k].folder, suite.item[k].check);
+    }
+    if (code == 0 && count == 0)
+        code = usage("no case is left after --layer, --case, --needs and --tier");
+    if (code == 0)
+        code = strcmp(verb, "list") == 0 ? list_cases(chosen, count) : run_cases(o, &suite, chosen, count);
+    free(chosen);
+    cases_free(&suite);
+    return code;
+}
+
+int main(int argc, char **argv)
+{
+    const char *verb = argc > 1 ? argv[1] : "";
+    if (strcmp(verb, "--help") == 0 || strcmp(verb, "-h") == 0)
+        return fputs(help, stdout) < 0;
+    if (strcmp(verb, "--version") == 0)
+        return printf("gate %s, suite 1.0\n", GATE_VERSION) < 0;
+    if (strcmp(verb, "run") != 0 && strcmp(verb, "list") != 0)
+        return usage("%s'%s'; see gate --help", *verb ? "unknown command " : "say `run` or `list`, not ", verb);
+
+    struct options o = { .report = "build/report", .work = "build/gate", .jobs = 1 };
+    find_suite(o.suite_dir);
+    for (int k = 2; k < argc; k += 2) {
+        if (strcmp(argv[k], "--help") == 0)
+            return fputs(help, stdout) < 0;
+        const int code = parse_option(&o, argv[k], k + 1 < argc ? argv[k + 1] : NULL);
+        if (code != 0)
+            return code;
+    }
+    if (strcmp(verb, "run") == 0 && !o.candidate)
+        return usage("run needs --candidate COMMAND");
+    return with_suite(verb, &o);
+}

@@ -1,0 +1,7 @@
+/* How the report looks. */
+#ifndef HTML_STYLE_H
+#define HTML_STYLE_H
+
+extern const char html_style[];
+
+#endif

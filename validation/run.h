@@ -1,0 +1,20 @@
+/* Running cases in worker processes: one process per case, so that neither a candidate nor a check can take the run down. */
+#ifndef RUN_H
+#define RUN_H
+
+#include "report.h"
+
+struct run_plan {
+    const struct gate_case **gate_case; /* in the order in which they start */
+    size_t count;
+    const char *work;                   /* absolute folder; each case gets a folder in it */
+    struct candidate candidate;         /* `seconds` is set from each case */
+    int jobs;
+    int p_values;                       /* of the whole suite */
+    unsigned seed_offset;
+};
+
+/* Fills done[k] for plan->gate_case[k]; calls `completed` as each ends. */
+void run_all(const struct run_plan *plan, struct finished_case *done, void (*completed)(const struct finished_case *));
+
+#endif

@@ -1,0 +1,131 @@
+/* Lines for people and logs. The columns are fixed so that a log can be read, and cut, by eye. */
+#define _POSIX_C_SOURCE 200809L
+#include "terminal.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { SENTENCES_AT_MOST = 6 };
+
+static const char *colour(enum verdict v)
+{
+    static const char *const codes[] = { "\033[32m", "\033[90m", "\033[33m", "\033[1;31m" };
+    return isatty(STDOUT_FILENO) ? codes[v] : "";
+}
+
+static const char *plain(void)
+{
+    return isatty(STDOUT_FILENO) ? "\033[0m" : "";
+}
+
+void terminal_number(char *text, size_t room, double x)
+{
+    if (isnan(x))
+        snprintf(text, room, "-");
+    else
+        snprintf(text, room, "%.6g", x);
+}
+
+void terminal_error(char *text, size_t room, const struct result *r)
+{
+    if (!isnan(r->p))
+        snprintf(text, room, "p %.2g", r->p);
+    else if (!isnan(r->error))
+        snprintf(text, room, "%.2g", r->error);
+    else
+        snprintf(text, room, "-");
+}
+
+void terminal_open(const struct provenance *p)
+{
+    printf("gate %s, suite 1.0 (%s), candidate '%s' (%s), entry level %s, %s precision; not tested: %s\n", p->suite_version,
+           p->suite_hash, p->candidate, p->candidate_hash, p->level, p->precision, p->not_tested);
+    printf("%-10s %-28s %-34s %13s %13s %9s  %-12s %s\n", "layer", "case", "worst of", "measured", "expected", "error",
+           "verdict", "seconds");
+    fflush(stdout);
+}
+
+static int worse_first(const void *a, const void *b)
+{
+    const struct result *p = *(const struct result *const *)a, *q = *(const struct result *const *)b;
+    if (p->verdict != q->verdict)
+        return (int)q->verdict - (int)p->verdict;
+    return p->judgement != q->judgement ? (int)p->judgement - (int)q->judgement : (p > q) - (p < q);
+}
+
+/* Wrapped at 116 columns, indented under the case's line. */
+static void print_sentence(const struct result *r)
+{
+    printf("           %s%s%s: ", colour(r->verdict), r->verdict == VERDICT_FAIL ? "fails" : verdict_word(r->verdict), plain());
+    int column = 24;
+    for (const char *word = r->sentence ? r->sentence : ""; *word;) {
+        const int n = (int)strcspn(word, " \n");
+        if (column + n > 116) {
+            printf("\n               ");
+            column = 15;
+        }
+        printf("%.*s ", n, word);
+        column += n + 1;
+        word += n;
+        word += strspn(word, " \n");
+    }
+    putchar('\n');
+}
+
+static void print_sentences(const struct results *r)
+{
+    const struct result **order = malloc((r->count + 1) * sizeof *order);
+    int count = 0;
+    for (size_t k = 0; k < r->count; k++)
+        if (r->item[k].verdict != VERDICT_PASS)
+            order[count++] = &r->item[k];
+    qsort(order, (size_t)count, sizeof *order, worse_first);
+    for (int k = 0; k < count && k < SENTENCES_AT_MOST; k++)
+        print_sentence(order[k]);
+    if (count > SENTENCES_AT_MOST)
+        printf("           ... and %d more; the report has them all\n", count - SENTENCES_AT_MOST);
+    free(order);
+}
+
+void terminal_case(const struct finished_case *done)
+{
+    char measured[32] = "-", expected[32] = "-", error[32] = "-";
+    const struct result *worst = results_worst(&done->results);
+    if (worst) {
+        terminal_number(measured, sizeof measured, worst->measured);
+        terminal_number(expected, sizeof expected, worst->expected);
+        terminal_error(error, sizeof error, worst);
+    }
+    printf("%-10s %-28s %-34.34s %13s %13s %9s  %s%-12s%s %.1f\n", layer_name(done->gate_case->layer), done->gate_case->name,
+           worst ? worst->what : "no result", measured, expected, error, colour(done->verdict), verdict_word(done->verdict),
+           plain(), done->seconds);
+    print_sentences(&done->results);
+    fflush(stdout);
+}
+
+static void name_those(const char *head, enum verdict v, const struct finished_case *done, size_t count)
+{
+    bool first = true;
+    for (size_t k = 0; k < count; k++)
+        if (done[k].verdict == v) {
+            printf("%s %s", first ? head : ",", done[k].gate_case->name);
+            first = false;
+        }
+    if (!first)
+        putchar('\n');
+}
+
+void terminal_close(const struct finished_case *done, size_t count, double seconds, struct tally t)
+{
+    double candidate = 0;
+    for (size_t k = 0; k < count; k++)
+        candidate += done[k].candidate_seconds;
+    name_those("failed:", VERDICT_FAIL, done, count);
+    name_those("inconclusive (counted as failed):", VERDICT_INCONCLUSIVE, done, count);
+    name_those("skipped, the candidate does not have this physics:", VERDICT_SKIP, done, count);
+    printf("%.1f s, of which %.1f s of candidate runs\n", seconds, candidate);
+    printf("%d passed, %d failed, %d skipped\n", t.passed, t.failed, t.skipped);
+}

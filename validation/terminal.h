@@ -1,0 +1,15 @@
+/* What the gate prints while it runs. */
+#ifndef TERMINAL_H
+#define TERMINAL_H
+
+#include "report.h"
+
+void terminal_open(const struct provenance *p);                 /* the first line, and the heads of the columns */
+void terminal_case(const struct finished_case *done);           /* one line, and what is wrong in full sentences */
+void terminal_close(const struct finished_case *done, size_t count, double seconds, struct tally t); /* ends with the counts */
+
+/* The numbers of a result as short text: at most `room` characters; "-" where there is none. */
+void terminal_number(char *text, size_t room, double x);
+void terminal_error(char *text, size_t room, const struct result *r);   /* "3.1e-13", or "p 0.04" */
+
+#endif
