@@ -10,7 +10,7 @@ JOBS     ?= $(shell nproc)
 WARN     := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wstrict-prototypes -Wmissing-prototypes -Werror
 OPT      ?= -O2
 CFLAGS   ?= $(OPT) -g
-BASE     := -std=c11 -D_POSIX_C_SOURCE=200809L -ffp-contract=off -fno-math-errno $(WARN) -MMD -MP
+BASE     := -std=c11 -D_XOPEN_SOURCE=700 -ffp-contract=off -fno-math-errno $(WARN) -MMD -MP
 B        ?= build
 
 SOLVER   := $(wildcard solver/*.c solver/*/*.c)

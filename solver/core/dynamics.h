@@ -1,0 +1,16 @@
+/* What an equation of motion is: one file of dynamics/ each, which spells its step. */
+#ifndef CORE_DYNAMICS_H
+#define CORE_DYNAMICS_H
+
+#include "core/suspension.h"
+
+struct dynamics {
+    const char *name;
+    /* Moves the suspension by s->dt; forces and stresses are then those at the new time. */
+    bool (*step)(const struct dynamics *self, struct suspension *s, bool *relisted, struct error *e);
+    /* Forces at the start, where nothing has moved yet. */
+    bool (*begin)(const struct dynamics *self, struct suspension *s, bool *relisted, struct error *e);
+    bool explicit_friction;                 /* its step is limited by drag and lubrication, and biased by noise */
+};
+
+#endif

@@ -1,0 +1,3 @@
+#include "core/noise.h"
+
+const char *const noise_laws[] = { "gaussian", "uniform", 0 };

@@ -1,0 +1,63 @@
+/*
+ * Random numbers as a function of what they are for (counter-based): (seed, realisation, stream, step, tags of the pair,
+ * image) -> eight numbers of mean 0 and variance 1. The order in which they are asked for does not matter, so the same
+ * scene has the same noise in any loop order, in any number of processes, and after a restart.
+ *
+ * Generator: Philox4x32-10, Salmon et al. (2011), from the Random123 library. Gaussian numbers by Box & Muller (1958).
+ */
+#ifndef CORE_NOISE_H
+#define CORE_NOISE_H
+
+#include "core/vec3.h"
+
+#include <Random123/philox.h>
+#include <stdint.h>
+
+enum noise_law { NOISE_GAUSSIAN, NOISE_UNIFORM };
+extern const char *const noise_laws[];                                      /* their names, NULL at the end */
+
+/* One stream per thing that draws: two streams never share a number. */
+enum noise_stream { NOISE_START, NOISE_THERMAL, NOISE_DRAG, NOISE_LUBRICATION };
+
+struct noise_key { uint32_t seed, realisation; };
+
+/* What the number is for. `j` is 0 for one particle; `image` tells images of the same pair apart, 0 in large boxes. */
+struct noise_place { enum noise_stream stream; int64_t step; int i, j; uint32_t image; };
+
+/* Uniform in (0, 1), never 0 or 1, so that its logarithm is finite. */
+static inline double noise_fraction(uint32_t word) { return ((double)word + 0.5) * 0x1p-32; }
+
+static inline philox4x32_ctr_t noise_words(const struct noise_key *key, const struct noise_place *at, uint32_t block)
+{
+    const philox4x32_ctr_t counter = { { (uint32_t)at->step, (uint32_t)(at->step >> 32) << 17 | (at->image & 0x7fffu) << 2 | block,
+                                         (uint32_t)at->i, (uint32_t)at->j } };
+    const philox4x32_key_t both = { { key->seed, key->realisation << 8 | (uint32_t)at->stream } };
+    return philox4x32(counter, both);
+}
+
+static inline void noise_four(uint32_t block, enum noise_law law, const struct noise_key *key, const struct noise_place *at, double z[4])
+{
+    const philox4x32_ctr_t w = noise_words(key, at, block);
+    if (law == NOISE_UNIFORM) {
+        for (int k = 0; k < 4; k++)
+            z[k] = sqrt(12.0) * (noise_fraction(w.v[k]) - 0.5);
+        return;
+    }
+    for (int k = 0; k < 4; k += 2) {
+        const double size = sqrt(-2.0 * log(noise_fraction(w.v[k]))), angle = 2.0 * M_PI * noise_fraction(w.v[k + 1]);
+        z[k] = size * cos(angle);
+        z[k + 1] = size * sin(angle);
+    }
+}
+
+/* Two independent vectors of independent numbers. */
+static inline void noise_vectors(enum noise_law law, const struct noise_key *key, const struct noise_place *at, vec3 *first, vec3 *second)
+{
+    double z[8];
+    noise_four(0, law, key, at, z);
+    noise_four(1, law, key, at, z + 4);
+    *first = vec(z[0], z[1], z[2]);
+    *second = vec(z[3], z[4], z[5]);
+}
+
+#endif

@@ -1,0 +1,24 @@
+/*
+ * What an observer is: something that looks at the suspension at its own times and never changes it.
+ *
+ * It is made from the scene without touching a file; `open` comes once the start has been found sound.
+ */
+#ifndef CORE_OBSERVER_H
+#define CORE_OBSERVER_H
+
+#include "core/suspension.h"
+
+/* Where a run writes, and what it says of itself at the top of each file. */
+struct destination { char folder[400]; char provenance[1500]; };
+
+struct observer {
+    int64_t every;                              /* due at every so many steps, step 0 included; 0: at the steps of `at` */
+    int64_t *at;                                /* ascending, NULL unless every is 0 */
+    int at_count, at_next;
+    bool measures;                              /* needs the stress of the evaluation just made */
+    bool (*open)(struct observer *self, const struct suspension *s, const struct destination *to, struct error *e);
+    bool (*observe)(struct observer *self, const struct suspension *s, struct error *e);
+    bool (*close)(struct observer *self, struct error *e);      /* flushes and frees; false if anything was not written */
+};
+
+#endif

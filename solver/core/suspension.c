@@ -1,0 +1,60 @@
+#include "core/suspension.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+const struct force *suspension_force(const struct suspension *s, const char *name)
+{
+    for (int k = 0; k < s->force_count; k++)
+        if (strcmp(s->force[k]->name, name) == 0)
+            return s->force[k];
+    return NULL;
+}
+
+void suspension_take(struct suspension *s, struct force *f)
+{
+    struct particles *p = &s->particles;
+    s->force[s->force_count++] = f;
+    s->neighbours.keeps_history |= f->keeps_history;
+    s->neighbours.near.keeps_resistance |= f->keeps_resistance;
+    for (int k = 0; k < 2 && f->origin_name[k]; k++)
+        f->origin[k] = stress_origin(&s->stress, f->origin_name[k]);
+    for (int a = 0; a < p->species_count; a++)
+        for (int b = 0; b < p->species_count; b++)
+            s->neighbours.range[a][b] = fmax(s->neighbours.range[a][b], f->range_factor * (p->kind[a].radius + p->kind[b].radius));
+}
+
+bool suspension_evaluate(struct suspension *s, const struct moment *now, bool *relisted, struct error *e)
+{
+    struct particles *p = &s->particles;
+    if (!neighbours_find(&s->neighbours, &s->box, p, relisted, e))
+        return false;
+    memset(p->force, 0, (size_t)p->count * sizeof *p->force);
+    if (p->torque)
+        memset(p->torque, 0, (size_t)p->count * sizeof *p->torque);
+    struct stress *stress = s->measuring ? &s->stress : NULL;
+    if (stress)
+        stress_clear(stress);
+    for (int k = 0; k < s->force_count; k++)
+        s->force[k]->add(s->force[k], p, &s->neighbours.near, now, stress);
+    suspension_flatten(s);
+    return true;
+}
+
+void suspension_flatten(struct suspension *s)
+{
+    struct particles *p = &s->particles;
+    for (int i = 0; s->dimensions == 2 && i < p->count; i++) {
+        p->force[i].z = 0.0;
+        if (p->torque)
+            p->torque[i].x = p->torque[i].y = 0.0;
+    }
+}
+
+void suspension_free(struct suspension *s)
+{
+    for (int k = 0; k < s->force_count; k++)
+        free(s->force[k]);
+    neighbours_free(&s->neighbours);
+    particles_free(&s->particles);
+}

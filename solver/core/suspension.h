@@ -1,0 +1,43 @@
+/*
+ * A suspension: liquid, cell, particles, the forces that its scene names, and the time. What a step moves.
+ */
+#ifndef CORE_SUSPENSION_H
+#define CORE_SUSPENSION_H
+
+#include "core/force.h"
+#include "core/neighbours.h"
+#include "core/noise.h"
+
+enum { MAX_FORCES = 16 };
+
+struct suspension {
+    double viscosity;                       /* eta  [M/(L T)] */
+    double kT;                              /*      [M L^2/T^2] */
+    int dimensions;
+    bool rotates;                           /* particles spin */
+    struct noise_key key;
+    struct box box;
+    struct particles particles;
+    struct neighbours neighbours;
+    struct force *force[MAX_FORCES];
+    int force_count;
+    struct stress stress;
+    int kinetic_origin;
+    bool measuring;                         /* the next evaluation also sums the stress */
+    double overlap_limit;                   /* a run stops at a deeper one; fraction of the smaller radius */
+    int64_t step;
+    double start_time, dt;                  /* time = start_time + step dt */
+};
+
+const struct force *suspension_force(const struct suspension *s, const char *name);     /* NULL: the scene has none */
+
+/* Takes up a force: its range, its stress rows, what it keeps. */
+void suspension_take(struct suspension *s, struct force *f);
+
+/* Pairs at the present positions, then all forces. Fails on what no force could make sense of. */
+bool suspension_evaluate(struct suspension *s, const struct moment *now, bool *relisted, struct error *e);
+/* In two dimensions no force leaves the plane and no torque lies in it. */
+void suspension_flatten(struct suspension *s);
+void suspension_free(struct suspension *s);
+
+#endif

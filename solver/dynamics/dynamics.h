@@ -1,0 +1,9 @@
+/* Every equation of motion. */
+#ifndef DYNAMICS_H
+#define DYNAMICS_H
+
+#include "core/dynamics.h"
+
+extern const struct dynamics verlet;
+
+#endif

@@ -1,0 +1,215 @@
+#include "evaluate.h"
+
+#include "output/stress_columns.h"
+#include "scene.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Given histories of contacts: `contacts.csv`, state,i,j,sx,sy,sz, kept in memory as they stand. */
+struct contacts { int count; struct { int state, i, j; vec3 history; } *row; };
+
+static bool contacts_read(const char *path, struct contacts *c, struct error *e)
+{
+    FILE *in = fopen(path, "r");
+    char line[512];
+    int number = 0, room = 0;
+    if (!in)
+        return error_raise(e, ERROR_INPUT, "%s cannot be opened", path);
+    while (!error_raised(e) && fgets(line, sizeof line, in)) {
+        double v[6];
+        number++;
+        if (line[0] == '#' || strncmp(line, "state", 5) == 0)
+            continue;
+        if (sscanf(line, "%lf,%lf,%lf,%lf,%lf,%lf", &v[0], &v[1], &v[2], &v[3], &v[4], &v[5]) != 6)
+            error_raise(e, ERROR_INPUT, "%s:%d: six numbers are due: state,i,j,sx,sy,sz", path, number);
+        if (c->count == room) {
+            room = room ? 2 * room : 64;
+            void *more = realloc(c->row, (size_t)room * sizeof *c->row);
+            if (!more) {
+                error_out_of_memory(e);
+                break;
+            }
+            c->row = more;
+        }
+        c->row[c->count].state = (int)v[0];
+        c->row[c->count].i = (int)v[1];
+        c->row[c->count].j = (int)v[2];
+        c->row[c->count++].history = vec(v[3], v[4], v[5]);
+    }
+    fclose(in);
+    return !error_raised(e);
+}
+
+/* The history of a contact is that of i against j; the list keeps pairs with the smaller tag first. */
+static void contacts_place(const struct contacts *c, int state, struct suspension *s)
+{
+    for (int k = 0; k < c->count; k++) {
+        const bool swap = c->row[k].i > c->row[k].j;
+        vec3 *slot = c->row[k].state != state ? NULL
+                   : neighbours_history(&s->neighbours, &s->particles, swap ? c->row[k].j : c->row[k].i, swap ? c->row[k].i : c->row[k].j);
+        if (slot)
+            *slot = scaled(c->row[k].history, swap ? -1.0 : 1.0);
+    }
+}
+
+static struct moment frozen_moment(const struct suspension *s, int64_t step)
+{
+    return (struct moment){ .box = &s->box, .step = step, .dt = s->dt, .drift_velocity = s->particles.velocity, .drift_spin = s->particles.spin };
+}
+
+/* Forces and torques of one force alone are in the particles' arrays afterwards; the stress is added to. */
+static void act_alone(const struct force *f, struct suspension *s, int64_t step, struct stress *stress)
+{
+    struct particles *p = &s->particles;
+    const struct moment now = frozen_moment(s, step);
+    memset(p->force, 0, (size_t)p->count * sizeof *p->force);
+    if (p->torque)
+        memset(p->torque, 0, (size_t)p->count * sizeof *p->torque);
+    f->add(f, p, &s->neighbours.near, &now, stress);
+    suspension_flatten(s);
+}
+
+static void write_forces(FILE *out, int state, const char *name, const struct particles *p, const vec3 *force, const vec3 *torque)
+{
+    for (int i = 0; i < p->count; i++)
+        fprintf(out, "%d,%s,%d,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", state, name, p->tag[i], force[i].x, force[i].y, force[i].z,
+                torque ? torque[i].x : 0.0, torque ? torque[i].y : 0.0, torque ? torque[i].z : 0.0);
+}
+
+static bool evaluate_state(struct simulation *sim, const struct state_file *states, const struct contacts *contacts, int state,
+                           FILE *forces, FILE *stresses, struct error *e)
+{
+    struct suspension *s = &sim->suspension;
+    struct particles *p = &s->particles;
+    bool relisted;
+    if (!scene_place(sim, states, state, e) || !neighbours_find(&s->neighbours, &s->box, p, &relisted, e))
+        return false;
+    contacts_place(contacts, state, s);
+    vec3 *force = calloc((size_t)p->count, sizeof *force), *torque = calloc((size_t)p->count, sizeof *torque);
+    if (!force || !torque) {
+        free(force);
+        free(torque);
+        return error_out_of_memory(e);
+    }
+    stress_clear(&s->stress);
+    for (int k = 0; k < s->force_count; k++) {
+        if (s->force[k]->noise)
+            continue;
+        act_alone(s->force[k], s, 0, &s->stress);
+        write_forces(forces, state, s->force[k]->name, p, p->force, p->torque);
+        for (int i = 0; i < p->count; i++) {
+            force[i] = plus(force[i], p->force[i]);
+            torque[i] = p->torque ? plus(torque[i], p->torque[i]) : torque[i];
+        }
+    }
+    write_forces(forces, state, "total", p, force, torque);
+    free(force);
+    free(torque);
+    stress_kinetic(&s->stress, s->kinetic_origin, &s->box, p);
+    stress_finish(&s->stress, s->box.volume);
+    fprintf(stresses, "%d", state);
+    stress_write_values(stresses, &s->stress);
+    return true;
+}
+
+static bool evaluate_forces(struct simulation *sim, const struct state_file *states, const struct contacts *contacts, struct error *e)
+{
+    struct table forces = { NULL, "" }, stresses = { NULL, "" };
+    if (table_open(&forces, &sim->destination, "forces.csv", e) && table_open(&stresses, &sim->destination, "stress.csv", e)) {
+        fputs("state,force,id,fx,fy,fz,tx,ty,tz\n", forces.file);
+        fputs("state", stresses.file);
+        stress_write_names(stresses.file, &sim->suspension.stress);
+        for (int k = 0; k < state_file_count(states); k++)
+            if (!evaluate_state(sim, states, contacts, k, forces.file, stresses.file, e))
+                break;
+    }
+    table_close(&forces, e);
+    table_close(&stresses, e);
+    return !error_raised(e);
+}
+
+/* NPY 1.0: magic, version, length of the header, the header padded to 64 bytes, then the numbers. */
+static void npy_header(FILE *out, long draws, int particles)
+{
+    char text[118 + 1];
+    const int length = snprintf(text, sizeof text, "{'descr': '<f8', 'fortran_order': False, 'shape': (%ld, %d, 6), }", draws, particles);
+    fwrite("\x93NUMPY\x01\x00\x76\x00", 1, 10, out);
+    fprintf(out, "%s%*s\n", text, 117 - length, "");
+}
+
+static bool evaluate_noise(struct simulation *sim, const struct state_file *states, long draws, struct error *e)
+{
+    struct suspension *s = &sim->suspension;
+    struct particles *p = &s->particles;
+    bool relisted;
+    if (!scene_place(sim, states, 0, e) || !neighbours_find(&s->neighbours, &s->box, p, &relisted, e))
+        return false;
+    for (int k = 0; k < s->force_count; k++)            /* the drags leave the resistances that their noises need */
+        if (!s->force[k]->noise)
+            act_alone(s->force[k], s, 0, NULL);
+    for (int k = 0; k < s->force_count && !error_raised(e); k++) {
+        char name[80];
+        struct table t = { NULL, "" };
+        if (!s->force[k]->noise)
+            continue;
+        snprintf(name, sizeof name, "noise_%s.npy", s->force[k]->name);
+        struct destination bare = sim->destination;
+        bare.provenance[0] = 0;
+        if (!table_open(&t, &bare, name, e))
+            break;
+        npy_header(t.file, draws, p->count);
+        for (long draw = 0; draw < draws; draw++) {
+            act_alone(s->force[k], s, draw, NULL);
+            for (int i = 0; i < p->count; i++) {
+                const vec3 none = { 0, 0, 0 };
+                fwrite(&p->force[i], sizeof(double), 3, t.file);
+                fwrite(p->torque ? &p->torque[i] : &none, sizeof(double), 3, t.file);
+            }
+        }
+        table_close(&t, e);
+    }
+    return !error_raised(e);
+}
+
+bool evaluate_case(const char *case_folder, const char *out_folder, struct error *e)
+{
+    static const char *const protocols[] = { "forces", "noise", "run", NULL };
+    char path[512], scene[512], start[512] = "";
+    struct settings c;
+    snprintf(path, sizeof path, "%.400s/case.json", case_folder);
+    if (!settings_load(&c, path, NULL, 0, e))
+        return false;
+    const int protocol = settings_choice(&c, "protocol", protocols, e);
+    const long draws = protocol == 1 ? (long)settings_whole(&c, "draws", 1, 1000000000, e) : 0;
+    snprintf(scene, sizeof scene, "%.350s/%.150s", case_folder, settings_text(&c, "scene", e));
+    if (protocol != 2)
+        snprintf(start, sizeof start, "%.350s/%.150s", case_folder, settings_text(&c, "states", e));
+    struct contacts contacts = { 0, NULL };
+    if (!error_raised(e) && settings_has(&c, "contacts")) {
+        snprintf(path, sizeof path, "%.350s/%.150s", case_folder, settings_text(&c, "contacts", e));
+        contacts_read(path, &contacts, e);
+    }
+    settings_unload(&c);
+
+    struct simulation *sim = calloc(1, sizeof *sim);
+    struct state_file *states = error_raised(e) || protocol == 2 ? NULL : state_file_read(start, e);
+    const struct scene_options options = { .states = protocol == 2 ? NULL : start, .frozen = protocol != 2 };
+    if (!sim)
+        error_out_of_memory(e);
+    else if (!error_raised(e) && scene_build(scene, &options, sim, e)) {
+        snprintf(sim->destination.folder, sizeof sim->destination.folder, "%s", out_folder);
+        if (protocol == 0)
+            evaluate_forces(sim, states, &contacts, e);
+        else if (protocol == 1)
+            evaluate_noise(sim, states, draws, e);
+        else if (simulation_begin(sim, e))
+            simulation_run(sim, e);
+    }
+    if (sim)
+        simulation_close(sim, e);
+    free(sim);
+    state_file_free(states);
+    free(contacts.row);
+    return !error_raised(e);
+}

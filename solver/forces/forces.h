@@ -1,0 +1,14 @@
+/* Every force: its constructor takes its part of the scene and the suspension it joins. */
+#ifndef FORCES_H
+#define FORCES_H
+
+#include "core/settings.h"
+#include "core/suspension.h"
+
+struct force *contact_new(struct settings *s, const struct suspension *in, struct error *e);
+struct force *drag_new(struct settings *s, const struct suspension *in, struct error *e);
+struct force *drag_noise_new(struct settings *s, const struct suspension *in, struct error *e);
+struct force *lubrication_new(struct settings *s, const struct suspension *in, struct error *e);
+struct force *lubrication_noise_new(struct settings *s, const struct suspension *in, struct error *e);
+
+#endif

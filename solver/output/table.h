@@ -1,0 +1,16 @@
+/* Tables that grow: CSV with provenance lines above the header. */
+#ifndef OUTPUT_TABLE_H
+#define OUTPUT_TABLE_H
+
+#include "core/observer.h"
+
+#include <stdio.h>
+
+struct table { FILE *file; char path[512]; };
+
+bool table_open(struct table *t, const struct destination *to, const char *name, struct error *e);
+/* Fails if anything of the table was not written: the disk may be full. */
+bool table_check(struct table *t, struct error *e);
+bool table_close(struct table *t, struct error *e);
+
+#endif

@@ -1,0 +1,27 @@
+/* Ways of driving a suspension, and of starting one. */
+#ifndef PROTOCOLS_H
+#define PROTOCOLS_H
+
+#include "core/settings.h"
+#include "core/suspension.h"
+
+/* The velocity gradient of the scene's list of simple shears (`root.shear`). */
+mat3 steady_shear(struct settings *root, struct error *e);
+
+/* Non-overlapping spheres at random, in a box scaled to the volume fraction. */
+bool random_start(struct settings *s, struct suspension *in, struct error *e);
+
+/* Maxwellian velocities and spins at kT on top of what is there. */
+void thermal_start(struct suspension *s);
+
+/* Velocities that follow the flow, spins of half its vorticity. */
+void follow_flow(struct suspension *s);
+
+/* Independent configurations read from one file. */
+struct state_file;
+struct state_file *state_file_read(const char *path, struct error *e);
+void state_file_free(struct state_file *f);
+int state_file_count(const struct state_file *f);
+bool state_file_place(const struct state_file *f, int state, struct suspension *in, struct error *e);
+
+#endif

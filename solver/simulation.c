@@ -1,0 +1,96 @@
+#include "simulation.h"
+
+#include "core/step_limit.h"
+
+static bool is_due(struct observer *o, int64_t step)
+{
+    if (o->every > 0)
+        return step % o->every == 0;
+    while (o->at_next < o->at_count && o->at[o->at_next] < step)
+        o->at_next++;
+    return o->at_next < o->at_count && o->at[o->at_next] == step;
+}
+
+static bool measures_at(const struct simulation *sim, int64_t step)
+{
+    for (int k = 0; k < sim->observer_count; k++)
+        if (sim->observer[k]->measures && is_due(sim->observer[k], step))
+            return true;
+    return false;
+}
+
+static bool observe(struct simulation *sim, struct error *e)
+{
+    struct suspension *s = &sim->suspension;
+    if (s->measuring) {
+        stress_kinetic(&s->stress, s->kinetic_origin, &s->box, &s->particles);
+        stress_finish(&s->stress, s->box.volume);
+    }
+    for (int k = 0; k < sim->observer_count; k++)
+        if (is_due(sim->observer[k], s->step) && !sim->observer[k]->observe(sim->observer[k], s, e))
+            return false;
+    return true;
+}
+
+/* What must hold after each step for the model to mean anything. */
+static bool sound(const struct simulation *sim, bool relisted, struct error *e)
+{
+    const struct suspension *s = &sim->suspension;
+    const struct near_pairs *near = &s->neighbours.near;
+    if (near->deepest > s->overlap_limit)
+        return error_raise(e, ERROR_RUN, "particles %d and %d overlap by %.3g of the smaller radius at time %.9g (step %lld); the limit is %g: "
+                           "stiffen the contact, slow the flow or shorten dt", near->deepest_tag[0], near->deepest_tag[1], near->deepest,
+                           s->box.time, (long long)s->step, s->overlap_limit);
+    if (!relisted || step_surely_stable(s, s->dt))
+        return true;
+    const struct step_limit limit = step_limit_of(s, e);
+    if (error_raised(e) || s->dt < limit.dt)
+        return !error_raised(e);
+    char whom[80];
+    if (limit.tag)
+        snprintf(whom, sizeof whom, "particle %d with %d near neighbours", limit.tag, limit.neighbours);
+    else
+        snprintf(whom, sizeof whom, "%s", limit.neighbours ? "a lone pair in contact" : "a lone particle");
+    return error_raise(e, ERROR_RUN,
+                       "dynamics.%s.dt is %g; at time %.9g it must be below %.4g, the limit that %s sets for %s: take dt at most %.2g, or \"auto\"",
+                       sim->dynamics->name, s->dt, s->box.time, limit.dt, limit.force, whom, 0.5 * limit.dt);
+}
+
+bool simulation_begin(struct simulation *sim, struct error *e)
+{
+    struct suspension *s = &sim->suspension;
+    bool relisted;
+    s->measuring = measures_at(sim, 0);
+    if (!sim->dynamics->begin(sim->dynamics, s, &relisted, e) || !sound(sim, true, e))
+        e->code = ERROR_INPUT;                              /* nothing has moved yet: what is wrong is what was given */
+    return !error_raised(e);
+}
+
+bool simulation_run(struct simulation *sim, struct error *e)
+{
+    struct suspension *s = &sim->suspension;
+    bool relisted;
+    for (int k = 0; k < sim->observer_count; k++)
+        if (!sim->observer[k]->open(sim->observer[k], s, &sim->destination, e))
+            return false;
+    if (!observe(sim, e))
+        return false;
+    progress_start(&sim->progress, s->step, sim->last_step);
+    while (s->step < sim->last_step) {
+        s->measuring = measures_at(sim, s->step + 1);
+        if (!sim->dynamics->step(sim->dynamics, s, &relisted, e) || !sound(sim, relisted, e) || !observe(sim, e))
+            break;
+        progress_show(&sim->progress, s);
+    }
+    progress_end(&sim->progress);
+    return !error_raised(e);
+}
+
+bool simulation_close(struct simulation *sim, struct error *e)
+{
+    for (int k = 0; k < sim->observer_count; k++)
+        if (sim->observer[k])
+            sim->observer[k]->close(sim->observer[k], e);
+    suspension_free(&sim->suspension);
+    return !error_raised(e);
+}
