@@ -209,6 +209,7 @@ static void history_survives_remap(void)
         box_set_time(&b, b.time + 0.1);
     }
     check_true(n.made > 10 && b.lattice[0][1] != 0, "lists were made anew and the cell remapped");
+    p.position[0] = minus(where[0], box_unwrapped(&b, p.image[0]));
     where[1].y += 5e-1;
     p.position[1] = minus(where[1], box_unwrapped(&b, p.image[1]));
     check_true(neighbours_find(&n, &b, &p, &relisted, &e) && n.near.count == 0, "parted");
