@@ -114,13 +114,14 @@ static void read_numbers(FILE *f, int count, double *v)
  * Stress of frictional contacts from the list of pairs: distance, normal force (positive: repulsion), its vector, tangential force.
  * Both forces act on i; the vector of the normal force is along d = x_i - x_j, and the stress is -F (x) d.
  */
-static void pair_stress(FILE *pairs, const struct task *t, double contact[2][3][3])
+static void pair_stress(FILE *pairs, const struct task *t, long wanted, double contact[2][3][3])
 {
-    long step = 0, rows = 0;
+    long step = -1, rows = 0;
     double tilt, v[8];
     memset(contact, 0, 2 * sizeof *contact);
-    if (!next_frame(pairs, &step, &rows, &tilt))
-        fail("LAMMPS wrote fewer pair lists than stresses");
+    while (step != wanted)
+        if (!next_frame(pairs, &step, &rows, &tilt))
+            fail("LAMMPS wrote fewer pair lists than stresses");
     for (long r = 0; r < rows; r++) {
         read_numbers(pairs, 8, v);
         for (int k = 0; v[1] != 0 && k < 9; k++) {
@@ -134,7 +135,7 @@ static void pair_stress(FILE *pairs, const struct task *t, double contact[2][3][
 void write_answer_run(const struct task *t, const char *out)
 {
     const long first = first_step(t);
-    long step, rows;
+    long step, rows, last = -1;
     double contact[2][3][3] = { { { 0 } } }, kinetic[3][3], tilt = 0;
     if (t->stress_every > 0) {
         FILE *log = open_file(out, "lammps.log", "r"), *f = open_file(out, "stress.csv", "w");
@@ -142,10 +143,11 @@ void write_answer_run(const struct task *t, const char *out)
         fprintf(f, "step,time,strain");
         write_header(f, t);
         while (next_pressure(log, &step, contact[0], kinetic)) {
-            if (step % t->stress_every)
-                continue;   /* the last step is always printed */
+            if (step % t->stress_every || step < first || step == last)
+                continue;   /* printed anyway: the first and last step of each of the two runs, and so step 0 twice */
+            last = step;
             if (pairs)
-                pair_stress(pairs, t, contact);
+                pair_stress(pairs, t, step, contact);
             const double passed = (double)(step - first) * t->dt;
             fprintf(f, "%ld,%.17g,%.17g", step - first, t->time + passed, fabs(t->rate) * passed);
             write_stress(f, t, 0, contact, kinetic);
@@ -159,8 +161,9 @@ void write_answer_run(const struct task *t, const char *out)
         FILE *dump = open_file(out, "lammps.dump", "r"), *f = open_file(out, "trajectory.csv", "w");
         fprintf(f, "step,time,id,x,y,z,ux,uy,uz,wx,wy,wz\n");
         while (next_frame(dump, &step, &rows, &tilt)) {
-            if (step > first)   /* the cell in the dump is a step ahead, see candidate.c */
-                tilt -= t->rate * t->edge[1] * t->dt;
+            if (step < first)
+                continue;   /* before the spheres began to move */
+            tilt -= t->rate * t->edge[1] * t->dt;     /* the cell in the dump is a step ahead, see candidate.c */
             for (long r = 0; r < rows; r++) {
                 double v[13], x[3], u[3], w[3];
                 read_numbers(dump, 13, v);

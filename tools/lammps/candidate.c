@@ -12,9 +12,11 @@
  *              therefore starts at y = 0, so that this is U_inf. No torque (`omega yes` damps spins towards 0).
  *   velocities laboratory ones, as ours. Image velocities need `remap v` and `comm_modify vel yes`.
  *   step       velocity Verlet; contact history and drag see positions at t + dt and half-step velocities.
- *   lagging    fix deform moves the cell at the end of a step, so the forces of step n + 1 see the cell of step n. Telling
- *   cell       `run` that it began one step earlier (start M - 1) moves the cell one step ahead, and the forces see the
- *              right one. It also removes the trap of `run 0`, where the flow rate would be zero.
+ *   lagging    fix deform moves the cell at the end of a step, so the forces of step n + 1 see the cell of step n. Here a first
+ *   cell       step lets only the cell move (no sphere belongs to the group that is integrated), and the spheres follow:
+ *              from then on forces see the cell of their own time. `run` is told when the whole began and ends (`start`,
+ *              `stop`), which also removes the trap of `run 0`, where the flow rate would be zero.
+ *   friction   that first step would advance the history of a pair that already touches: such a start is refused.
  *   stress     pressure is positive in compression: stress = -pressure; xy is r_x F_y. It has six components only, which
  *              is all for central forces; with friction the pair forces are read one by one (answer.c).
  *   steps      counted from M, a multiple of all output intervals, because fixes and dumps act at multiples of theirs.
@@ -147,14 +149,17 @@ static void write_run(FILE *f, const struct task *t, const char *out)
 {
     const long first = first_step(t);
     write_physics(f, t, 0, out, t->contact, t->drag);
-    fprintf(f, "reset_timestep %ld\ntimestep %.17g\nfix move all nve/sphere\nthermo %ld\n", first, t->dt, t->stress_every);
+    fprintf(f, "reset_timestep %ld\ntimestep %.17g\ngroup moving empty\nfix move moving nve/sphere\nthermo %ld\n", first - 1, t->dt,
+            t->stress_every);
     if (t->states_every > 0)
         fprintf(f, "dump s all custom %ld %s/lammps.dump id ix iy iz x y z vx vy vz omegax omegay omegaz\n"
                    "dump_modify s sort id format float %%.17g\n", t->states_every, out);
     if (t->stress_every > 0 && t->contact && t->friction > 0)
         fprintf(f, "compute pairs all pair/local dist force fx fy fz p1 p2 p3\n"
                    "dump p all local %ld %s/lammps.pairs c_pairs[*]\ndump_modify p format float %%.17g\n", t->stress_every, out);
-    fprintf(f, "run %ld start %ld stop %ld\n", t->steps, first - 1, first + t->steps);
+    /* One step in which only the cell moves, then all steps of the run; `pre no` keeps the forces and the lists. */
+    fprintf(f, "run 1 start %ld stop %ld\ngroup moving union all\nrun %ld start %ld stop %ld pre no\n", first - 1,
+            first + t->steps, t->steps, first - 1, first + t->steps);
 }
 
 static void run_lammps(const char *out)
