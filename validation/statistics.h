@@ -55,6 +55,8 @@ double statistics_mean_p(const double *z, size_t n, size_t p);
 double statistics_lag_p(const double *z, size_t n, size_t p, size_t lag);
 /* Are two sets of draws uncorrelated, row by row? Sum of all squared cross-correlations, mean and variance exact. */
 double statistics_cross_p(const double *x, size_t p, const double *y, size_t q, size_t n);
+/* Its sum n |X^T Y/n|^2 (mean p q), for those who add several. NaN without memory. */
+double statistics_cross_sum(const double *x, size_t p, const double *y, size_t q, size_t n);
 /* Is the fourth moment Gaussian? Mean of z^4 - 3 over all numbers, which has variance 96/(n p); normal for large n p. */
 double statistics_fourth_moment_p(const double *z, size_t n, size_t p, double *fourth_moment);
 

@@ -1,0 +1,408 @@
+/*
+ * Layer 2: the Brownian forces of a frozen configuration
+ *
+ *     <F F^T> = (2 kT/dt) R ,      <F> = 0 ,      <F(t) F(t + k dt)^T> = 0
+ *
+ *     F    force and torque of every sphere, 6 N numbers            R   resistance matrix, F_drag = - R u
+ *     kT   thermal energy                                           dt  time step
+ *
+ * R is the candidate's own: one frozen state for each unit velocity and spin. So nothing here depends on a formula of ours; that R
+ * is the declared model's is a separate result. Draws are whitened by R: on its range they must be independent standard normals,
+ * on its null space (rigid translation, rolling, pairs out of reach) they must vanish.
+ *
+ * Source: Callen & Welton (1951), Ermak & McCammon (1978). For the pair noise of Li (2026): its eq 3.24 as printed has a plus
+ * where fluctuation and dissipation need a minus; it changes no block but <T_1 T_2>, which therefore is tried by itself.
+ */
+#include "heatmap.h"
+#include "noise.h"
+#include "statistics.h"
+
+#include <gsl/gsl_eigen.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { STREAMS = 2, DRAG = 0, LUBRICATION = 1 };
+static const char *const force_of[STREAMS] = { "drag", "lubrication" };
+static const char *const noise_of[STREAMS] = { "drag_noise", "lubrication_noise" };
+static const char *const short_of[STREAMS] = { "drag", "pair" };
+
+struct subject {
+    struct check_run *run;
+    const struct frozen *f;
+    size_t size, draws;             /* 6 N, number of draws */
+    double dt, kT;
+    double *R[STREAMS], *draw[STREAMS], *white[STREAMS];
+    struct whitening whitening[STREAMS];
+};
+
+/* z that an effect must reach to be seen: 3.9 is the alarm (two-sided p = 1e-4), 2 more see it 39 times in 40. */
+static const double seen = 5.9;
+
+static double declared(const struct subject *s, const char *key)
+{
+    char path[64];
+    snprintf(path, sizeof path, "declared.%s", key);
+    return scene_number(s->run->gate_case->parameters, path, NAN);
+}
+
+/* "pair torque" and the like: unique result names in buffers that live as long as the call needs them. */
+static const char *named(char text[96], int stream, const char *what)
+{
+    snprintf(text, 96, "%s noise: %s", short_of[stream], what);
+    return text;
+}
+
+static const char *block_name(char text[160], const struct subject *s, size_t a, size_t b)
+{
+    static const char *const kind[2] = { "force", "torque" };
+    const size_t i = a / 2, j = b / 2;
+    int used = snprintf(text, 160, "<%s %zu, %s %zu> (radii %.4g and %.4g", kind[a % 2], i + 1, kind[b % 2], j + 1, s->f->radius[i],
+                        s->f->radius[j]);
+    for (size_t k = 0; k < s->f->pairs; k++)
+        if ((s->f->pair[k].i == i && s->f->pair[k].j == j) || (s->f->pair[k].i == j && s->f->pair[k].j == i))
+            used += snprintf(text + used, 160 - (size_t)used, ", gap xi = %.3g", s->f->pair[k].xi);
+    snprintf(text + used, 160 - (size_t)used, ")");
+    return text;
+}
+
+/* What a factor in the variance often means. */
+static const char *guess(const struct subject *s, double ratio)
+{
+    const struct { double value; const char *text; } known[] = {
+        { 2.0, " A factor 2: both sides of a pair draw, or noise is added twice." },
+        { 0.5, " A factor 1/2: kT where 2 kT belongs." },
+        { s->dt, " A factor dt: the noise lacks 1/sqrt(dt)." },
+        { 1.0 / s->dt, " A factor 1/dt: 1/dt where 1/sqrt(dt) belongs." },
+        { s->kT, " A factor kT: kT where sqrt(kT) belongs." },
+        { 1.0 / s->kT, " A factor 1/kT: sqrt(kT) is missing." },
+        { 1.0 / 3.0, " A factor 1/3: uniform numbers on (-1, 1) without the factor 3 of their variance." },
+        { 1.0 / 12.0, " A factor 1/12: uniform numbers on (-1/2, 1/2) without the factor 12 of their variance." },
+    };
+    for (size_t k = 0; k < sizeof known / sizeof *known; k++)
+        if (fabs(ratio / known[k].value - 1.0) < 0.03)
+            return known[k].text;
+    return "";
+}
+
+/* --- the resistance matrix itself --- */
+
+static void judge_resistance(const struct subject *s, int stream, const double *R)
+{
+    const double tolerance = s->run->gate_case->tolerance;
+    const size_t n = s->size;
+    double largest = 0.0, skew = 0.0;
+    size_t at = 0;
+    char name[96], block[160];
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j < n; j++) {
+            largest = fmax(largest, fabs(R[i * n + j]));
+            if (fabs(R[i * n + j] - R[j * n + i]) > skew) {
+                skew = fabs(R[i * n + j] - R[j * n + i]);
+                at = i * n + j;
+            }
+        }
+    snprintf(name, sizeof name, "R of %s: symmetric", force_of[stream]);
+    check_error(s->run, INVARIANT, name, R[at], R[at % n * n + at / n], skew / largest, tolerance,
+                "the resistance measured from the candidate's own %s is not symmetric; worst block %s", force_of[stream],
+                block_name(block, s, at / n / 3, at % n / 3));
+
+    gsl_matrix *copy = gsl_matrix_alloc(n, n);
+    gsl_vector *eigenvalue = gsl_vector_alloc(n);
+    gsl_eigen_symm_workspace *space = gsl_eigen_symm_alloc(n);
+    for (size_t i = 0; i < n * n; i++)
+        gsl_matrix_set(copy, i / n, i % n, 0.5 * (R[i] + R[i % n * n + i / n]));
+    gsl_eigen_symm(copy, eigenvalue, space);
+    const double least = gsl_vector_min(eigenvalue), most = gsl_vector_max(eigenvalue);
+    snprintf(name, sizeof name, "R of %s: positive", force_of[stream]);
+    check_error(s->run, INVARIANT, name, least, 0.0, most > 0.0 ? fmax(0.0, -least / most) : NAN, tolerance,
+                "%s puts energy in: its resistance matrix has the eigenvalue %.6g (largest %.6g)", force_of[stream], least, most);
+    gsl_eigen_symm_free(space);
+    gsl_vector_free(eigenvalue);
+    gsl_matrix_free(copy);
+}
+
+static void judge_model(const struct subject *s, const struct model *m)
+{
+    double *theory = malloc(s->size * s->size * sizeof *theory), largest = 0.0;
+    char block[160];
+    struct worst worst = WORST_NONE;
+    theory_resistance(m, s->f, theory);
+    for (size_t k = 0; k < s->size * s->size; k++)
+        largest = fmax(largest, fabs(theory[k]));
+    for (size_t k = 0; k < s->size * s->size; k++)
+        worst_see(&worst, s->R[LUBRICATION][k], theory[k], largest, k);
+    check_error(s->run, MODEL, "R of lubrication: declared model", worst.measured, worst.expected, worst.error,
+                s->run->gate_case->tolerance, "the resistance matrix is not that of the declared lubrication: block %s has %s",
+                block_name(block, s, worst.at / s->size / 3, worst.at % s->size / 3), compare(&worst));
+    free(theory);
+}
+
+/* --- covariance --- */
+
+/* Correlation matrix of C, scaled by the expected variances; rows without variance are left out. */
+static void scaled_by(const double *C, const double *R, size_t n, double *out)
+{
+    double most = 0.0;
+    for (size_t i = 0; i < n; i++)
+        most = fmax(most, R[i * (n + 1)]);
+    for (size_t i = 0; i < n * n; i++) {
+        const double a = R[i / n * (n + 1)], b = R[i % n * (n + 1)];
+        out[i] = a > 1e-12 * most && b > 1e-12 * most ? C[i] / sqrt(a * b) : 0.0;
+    }
+}
+
+static void draw_picture(const struct subject *s, int stream, const double *C, const struct block_finding *worst, bool mark,
+                         struct result *r)
+{
+    const size_t n = s->size;
+    double *panel = calloc(3 * n * n, sizeof *panel);
+    if (!panel)
+        return;
+    char path[PATH_LENGTH], name[96], caption[200];
+    snprintf(name, sizeof name, "covariance-%s%s.svg", noise_of[stream], s->run->attempt > 1 ? "-rerun" : "");
+    path_join(path, s->run->work, name);
+    double *measured = panel, *expected = panel + n * n, *off = panel + 2 * n * n;
+    scaled_by(C, s->R[stream], n, measured);
+    scaled_by(s->R[stream], s->R[stream], n, expected);
+    const double error = 1.0 / sqrt((double)s->draws);
+    for (size_t k = 0; k < n * n; k++) {
+        off[k] = (measured[k] - expected[k]) / (error * sqrt(1.0 + expected[k] * expected[k]));
+        if (fabs(off[k]) < 3.0)
+            off[k] = 0.0;
+        if (fabs(measured[k]) < 4.0 * error)
+            measured[k] = 0.0;
+    }
+    const struct heatmap_panel panels[3] = { { "measured covariance", measured, 1.0 },
+                                             { "expected, (2kT/dt) R", expected, 1.0 },
+                                             { "difference in standard errors", off, 12.0 } };
+    snprintf(caption, sizeof caption,
+             "%s, %zu draws; a square for each sphere: force x y z, torque x y z; scaled by expected variances. Right: only above 3.",
+             noise_of[stream], s->draws);
+    const struct heatmap map = { .size = n, .group = 6, .panel = panels, .panels = 3, .caption = caption,
+                                 .marked_row = 3 * worst->a, .marked_column = 3 * worst->b, .marked_size = mark ? 3 : 0 };
+    if (heatmap_write(path, &map))
+        result_picture(r, name);
+    free(panel);
+}
+
+/* The coarsest resolution over <T_i T_j> of neighbours that feel each other: what the sign of eq 3.24 is about. */
+static double torque_resolution(const struct subject *s, int stream)
+{
+    double worst = NAN;
+    for (size_t k = 0; k < s->f->pairs; k++) {
+        const double r = statistics_block_resolution(s->R[stream], 2 * s->f->count, 2 * s->f->pair[k].i + 1,
+                                                     2 * s->f->pair[k].j + 1, s->draws);
+        if (isfinite(r))
+            worst = isnan(worst) ? r : fmax(worst, r);
+    }
+    return worst;
+}
+
+/* A change in one <T_i T_j>: over all neighbours in one number each, the worst with its own sentence. */
+static void judge_blocks(const struct subject *s, int stream, const double *C, double size_ratio)
+{
+    char name[96], block[160];
+    const struct block_finding w = statistics_worst_block(C, s->R[stream], 2 * s->f->count, s->draws);
+    const bool torques = w.a % 2 && w.b % 2 && w.a != w.b;
+    const char *hint = guess(s, isnan(w.ratio) ? size_ratio : w.ratio);
+    if (torques && stream == LUBRICATION && !hint[0])
+        hint = " The sign of the second sphere's torque noise (a minus; the plus of Li's printed eq 3.24 is wrong) shows here and"
+               " nowhere else.";
+    char sentence[512];
+    block_name(block, s, w.a, w.b);
+    if (isnan(w.ratio))
+        snprintf(sentence, sizeof sentence, "block %s of the %s covariance should vanish, and does not (z = %.3g)", block,
+                 short_of[stream], w.z);
+    else
+        snprintf(sentence, sizeof sentence, "block %s of the %s covariance is %.4g times what the candidate's own resistance asks "
+                 "for (z = %.3g).%s", block, short_of[stream], w.ratio, w.z, hint);
+    const bool pair = stream == LUBRICATION;
+    struct result *r = check_p(s->run, INVARIANT, named(name, stream, "worst block"), w.ratio, isnan(w.ratio) ? NAN : 1.0, w.p,
+                               pair ? torque_resolution(s, stream) : NAN, pair ? declared(s, "torque_block") : NAN, "%s", sentence);
+    result_notes(r, "Most deviating of all 3 x 3 blocks: %s, measured over expected %.4g, z = %.3g; p is corrected for the search. "
+                 "What it must see is a change of any <torque i, torque j> of neighbours.", block, w.ratio, w.z);
+    draw_picture(s, stream, C, &w, w.p < 1e-3, r);
+}
+
+static void judge_stream(const struct subject *s, int stream)
+{
+    struct check_run *run = s->run;
+    const size_t n = s->draws, p = s->whitening[stream].rank;
+    const double *z = s->white[stream], count = (double)n, wide = (double)p;
+    char name[96];
+
+    const double mean_seen = sqrt(seen * sqrt(2.0 / wide) / count);
+    check_p(run, INVARIANT, named(name, stream, "mean"), NAN, 0.0, statistics_mean_p(z, n, p), mean_seen, declared(s, "mean"),
+            "the %s noise has a mean: it pushes instead of only shaking", short_of[stream]);
+
+    double ratio, fourth;
+    double pv = statistics_scale_p(z, n, p, &ratio);
+    check_p(run, INVARIANT, named(name, stream, "size"), ratio, 1.0, pv, seen * sqrt(2.0 / (count * wide)), declared(s, "size"),
+            "the variance of the %s noise is %.5g times 2 kT R/dt, R from the candidate's own %s.%s", short_of[stream], ratio,
+            force_of[stream], guess(s, ratio));
+
+    double *C = malloc(s->size * s->size * sizeof *C);
+    statistics_covariance(s->draw[stream], n, s->size, C);
+    /* n |S - 1|^2/2 (Frobenius) must reach `seen` standard deviations of chi-squared with p(p + 1)/2 degrees */
+    pv = statistics_identity_p(z, n, p);
+    check_p(run, INVARIANT, named(name, stream, "covariance"), NAN, NAN, pv, sqrt(2.0 * seen * (wide + 0.5) / (count * wide)),
+            declared(s, "covariance"), "the covariance of the %s noise is not (2 kT/dt) R, R from the candidate's own %s",
+            short_of[stream], force_of[stream]);
+    judge_blocks(s, stream, C, ratio);
+    free(C);
+
+    const double lag_seen = sqrt(seen * sqrt(2.0) / count);
+    for (size_t lag = 1; lag <= 2; lag++) {
+        char what[32];
+        snprintf(what, sizeof what, "white, lag %zu", lag);
+        check_p(run, INVARIANT, named(name, stream, what), NAN, 0.0, statistics_lag_p(z, n, p, lag), lag_seen, declared(s, "lag"),
+                "the %s noise remembers the draw %zu step%s before", short_of[stream], lag, lag > 1 ? "s" : "");
+    }
+    pv = statistics_fourth_moment_p(z, n, p, &fourth);
+    check_p(run, MODEL, named(name, stream, "Gaussian"), fourth, 3.0, pv, seen * sqrt(96.0 / (count * wide)) / 3.0,
+            declared(s, "fourth_moment"), "the fourth moment of the %s noise is %.4g, a Gaussian has 3 (uniform numbers: 1.8)",
+            short_of[stream], fourth);
+}
+
+/*
+ * Pairs that are far apart draw independently. Each pair is whitened by itself (rank 5); the correlations between all of them are
+ * put into one sum. Its terms share factors, which adds P C(P-1, 2) 2 * 5^3/n * 2 to the variance of independent terms.
+ */
+static void judge_pairs(const struct subject *s)
+{
+    const size_t n = s->draws, rank = 5;
+    double *all = malloc(n * rank * s->f->pairs * sizeof *all), *one = malloc(12 * n * sizeof *one);
+    double *z = malloc(12 * n * sizeof *z), block[144];
+    size_t used = 0;
+    for (size_t k = 0; k < s->f->pairs; k++) {
+        const size_t first = 6 * s->f->pair[k].i;      /* pairs of frozen_pairs follow each other: 12 numbers in a row */
+        for (size_t a = 0; a < 144; a++)
+            block[a] = s->R[LUBRICATION][(first + a / 12) * s->size + first + a % 12];
+        struct whitening w;
+        if (!whitening_make(block, 12, 1e-10, &w))
+            continue;
+        if (w.rank == rank) {
+            for (size_t t = 0; t < n; t++)
+                memcpy(one + 12 * t, s->draw[LUBRICATION] + t * s->size + first, 12 * sizeof *one);
+            whitening_apply(&w, one, n, z);
+            memcpy(all + n * rank * used++, z, n * rank * sizeof *z);
+        }
+        whitening_free(&w);
+    }
+    double sum = 0.0;
+    const double pairs = (double)used, terms = 0.5 * pairs * (pairs - 1.0) * 25.0, count = (double)n;
+    for (size_t a = 0; a < used; a++)
+        for (size_t b = a + 1; b < used; b++)
+            sum += statistics_cross_sum(all + n * rank * a, rank, all + n * rank * b, rank, n);
+    const double variance = 2.0 * terms * (1.0 + 11.0 / count) + 2.0 * pairs * 0.5 * (pairs - 1.0) * (pairs - 2.0) * 250.0 / count;
+    check_p(s->run, INVARIANT, "pair noise: pairs independent", NAN, 0.0, used > 1 ? statistics_matched_p(sum, terms, variance) : NAN,
+            sqrt(seen * sqrt(2.0 * terms) / (0.5 * pairs * (pairs - 1.0) * 5.0 * count)), declared(s, "lag"),
+            "the noise of one isolated pair is correlated with that of another: pairs share random numbers");
+    free(all);
+    free(one);
+    free(z);
+}
+
+/* Whether another realisation is independent of this one. */
+static void judge_realisation(const struct subject *s, json_t *scene, const struct question *q, double unit)
+{
+    char out[PATH_LENGTH], name[96];
+    json_object_set_new(scene, "realisation", json_integer(1));
+    if (!check_ask(s->run, "other-realisation", q, out))
+        return;
+    for (int k = 0; k < STREAMS; k++) {
+        double *draw = noise_draws(s->run, out, noise_of[k], s->draws, s->f, unit);
+        const struct whitening *w = &s->whitening[k];
+        double *z = draw ? malloc(s->draws * w->rank * sizeof *z) : NULL;
+        if (z) {
+            whitening_apply(w, draw, s->draws, z);
+            check_p(s->run, INVARIANT, named(name, k, "realisations independent"), NAN, 0.0,
+                    statistics_cross_p(s->white[k], w->rank, z, w->rank, s->draws), sqrt(seen * sqrt(2.0) / (double)s->draws),
+                    declared(s, "lag"), "realisations 0 and 1 of the %s noise are correlated: they are no independent samples",
+                    short_of[k]);
+        }
+        free(z);
+        free(draw);
+    }
+}
+
+static void judge_noise(struct subject *s, json_t *scene, bool isolated)
+{
+    struct state_row row[64];
+    for (size_t i = 0; i < s->f->count; i++) {
+        row[i] = (struct state_row){ .state = 0, .id = (int)i + 1, .species = s->f->species[i] };
+        memcpy(row[i].x, s->f->x[i], sizeof row[i].x);
+    }
+    const struct question q = { .protocol = "noise", .scene = scene, .state = row, .states = s->f->count, .draws = s->draws };
+    const double unit = sqrt(2.0 * s->kT / s->dt);
+    char out[PATH_LENGTH], name[96];
+    if (!check_ask(s->run, "draws", &q, out))
+        return;
+    bool good = true;
+    for (int k = 0; k < STREAMS && good; k++) {
+        good = (s->draw[k] = noise_draws(s->run, out, noise_of[k], s->draws, s->f, unit)) != NULL
+               && whitening_make(s->R[k], s->size, 1e-11, &s->whitening[k])
+               && (s->white[k] = malloc((s->draws * s->whitening[k].rank + 1) * sizeof(double))) != NULL;
+        if (!good)
+            return;
+        check_progress(s->run, "%s, %zu draws", noise_of[k], s->draws);
+        const double stray = whitening_apply(&s->whitening[k], s->draw[k], s->draws, s->white[k]);
+        check_error(s->run, INVARIANT, named(name, k, "nothing outside the range of R"), stray, 0.0, stray, 1e-12,
+                    "the %s noise drives motions that the candidate's own %s does not resist (rigid translation, rolling, pairs out "
+                    "of reach): up to %.3g of the largest", short_of[k], force_of[k], stray);
+        if (s->whitening[k].rank == 0 || s->whitening[k].rank >= s->draws) {
+            check_garbage(s->run, "the resistance matrix measured from the forces is empty");
+            return;
+        }
+        judge_stream(s, k);
+    }
+    check_p(s->run, INVARIANT, "streams independent", NAN, 0.0,
+            statistics_cross_p(s->white[DRAG], s->whitening[DRAG].rank, s->white[LUBRICATION], s->whitening[LUBRICATION].rank, s->draws),
+            sqrt(seen * sqrt(2.0) / (double)s->draws), declared(s, "lag"),
+            "one-body and pair noise are correlated: they use the same random numbers");
+    if (isolated)
+        judge_pairs(s);
+    judge_realisation(s, scene, &q, unit);
+}
+
+static void judge_frozen(struct check_run *run, const struct model *m, const struct frozen *f, bool isolated)
+{
+    json_t *scene = frozen_scene(run, f);
+    struct subject s = { .run = run, .f = f, .size = 6 * f->count, .kT = scene_number(scene, "fluid.kT", NAN),
+                         .dt = scene_number(scene, "dynamics.verlet.dt", NAN) };
+    s.draws = (size_t)run->samples * (size_t)scene_number(run->gate_case->parameters, "draws", 0);
+    for (int k = 0; k < STREAMS; k++)
+        s.R[k] = malloc(s.size * s.size * sizeof(double));
+    if (measure_resistance(run, scene, f, STREAMS, force_of, s.R)) {
+        for (int k = 0; k < STREAMS; k++)
+            judge_resistance(&s, k, s.R[k]);
+        judge_model(&s, m);
+        judge_noise(&s, scene, isolated);
+    }
+    for (int k = 0; k < STREAMS; k++) {
+        free(s.R[k]);
+        free(s.draw[k]);
+        free(s.white[k]);
+        whitening_free(&s.whitening[k]);
+    }
+    json_decref(scene);
+}
+
+static void check_pairs(struct check_run *run)
+{
+    struct model m;
+    struct frozen f;
+    if (model_read(run, run->gate_case->scene, &m) && frozen_pairs(run, &m, &f))
+        judge_frozen(run, &m, &f, true);
+}
+
+static void check_cluster(struct check_run *run)
+{
+    struct model m;
+    struct frozen f;
+    if (model_read(run, run->gate_case->scene, &m) && frozen_cluster(run, &m, &f))
+        judge_frozen(run, &m, &f, false);
+}
+
+const struct check noise_checks[] = { { "noise-pairs", check_pairs }, { "noise-cluster", check_cluster }, { NULL, NULL } };

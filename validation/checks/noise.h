@@ -1,0 +1,40 @@
+/*
+ * Layer 2, shared parts: frozen configurations, the resistance matrix measured from the candidate's own drag, noise draws.
+ *
+ * Matrices and draws are in the order of noise_*.npy: for each sphere force x y z, then torque x y z.
+ */
+#ifndef NOISE_H
+#define NOISE_H
+
+#include "pair.h"
+
+/* Spheres at rest at fixed places. Neighbours are told as pairs so that a verdict can speak of them. */
+struct frozen {
+    size_t count, sizes;
+    double radius[64], x[64][3], size[64];              /* `size`: the different radii, one species each */
+    int species[64];                                    /* from 1 */
+    size_t pairs;
+    struct { size_t i, j; double xi; } pair[256];      /* within the outer gap, or meant to be just outside */
+};
+
+/* Isolated pairs, one to a slot of a coarse grid over the cell, as parameters.pairs ([ratio, gap]) asks. */
+bool frozen_pairs(struct check_run *run, const struct model *m, struct frozen *f);
+/* A random cluster grown sphere by sphere at the gaps of parameters.gaps, in the middle of a cell corner. */
+bool frozen_cluster(struct check_run *run, const struct model *m, struct frozen *f);
+
+/* Copy of the case's scene with a species for each size of `f`; the caller owns it. */
+json_t *frozen_scene(struct check_run *run, const struct frozen *f);
+
+/*
+ * R of one force by columns, R[.][k] = -(F(unit velocity k) - F(rest)), for the force names given; each 6N x 6N. False after
+ * recording what is wrong.
+ */
+bool measure_resistance(struct check_run *run, json_t *scene, const struct frozen *f, size_t forces, const char *const force[],
+                        double *R[]);
+/* The same for lubrication from the declared model, all pairs and images. */
+void theory_resistance(const struct model *m, const struct frozen *f, double *R);
+
+/* Draws of noise_<force>.npy, draws x 6N, divided by sqrt(2 kT/dt). Null after recording what is wrong. Caller frees. */
+double *noise_draws(struct check_run *run, const char *out, const char *force, size_t draws, const struct frozen *f, double unit);
+
+#endif
