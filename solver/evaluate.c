@@ -41,16 +41,31 @@ static bool contacts_read(const char *path, struct contacts *c, struct error *e)
     return !error_raised(e);
 }
 
+/* The history slot of a pair of tags (first image found); NULL if they are not neighbours. */
+static vec3 *history_of(struct neighbours *n, const struct particles *p, int tag_i, int tag_j)
+{
+    for (int k = 0; k < n->count && n->history; k++)
+        if (p->tag[n->candidate[k].i] == tag_i && p->tag[n->candidate[k].j] == tag_j)
+            return &n->history[k];
+    return NULL;
+}
+
 /* The history of a contact is that of i against j; the list keeps pairs with the smaller tag first. */
 static void contacts_place(const struct contacts *c, int state, struct suspension *s)
 {
     for (int k = 0; k < c->count; k++) {
         const bool swap = c->row[k].i > c->row[k].j;
         vec3 *slot = c->row[k].state != state ? NULL
-                   : neighbours_history(&s->neighbours, &s->particles, swap ? c->row[k].j : c->row[k].i, swap ? c->row[k].i : c->row[k].j);
+                   : history_of(&s->neighbours, &s->particles, swap ? c->row[k].j : c->row[k].i, swap ? c->row[k].i : c->row[k].j);
         if (slot)
             *slot = scaled(c->row[k].history, swap ? -1.0 : 1.0);
     }
+}
+
+/* The scene's particles replaced by one configuration of the file. */
+static bool place(struct suspension *s, const struct state_file *states, int state, struct error *e)
+{
+    return state_file_place(states, state, s, e) && neighbours_start(&s->neighbours, &s->box, &s->particles, e);
 }
 
 static struct moment frozen_moment(const struct suspension *s, int64_t step)
@@ -83,7 +98,7 @@ static bool evaluate_state(struct simulation *sim, const struct state_file *stat
     struct suspension *s = &sim->suspension;
     struct particles *p = &s->particles;
     bool relisted;
-    if (!scene_place(sim, states, state, e) || !neighbours_find(&s->neighbours, &s->box, p, &relisted, e))
+    if (!place(s, states, state, e) || !neighbours_find(&s->neighbours, &s->box, p, &relisted, e))
         return false;
     contacts_place(contacts, state, s);
     vec3 *force = calloc((size_t)p->count, sizeof *force), *torque = calloc((size_t)p->count, sizeof *torque);
@@ -143,7 +158,7 @@ static bool evaluate_noise(struct simulation *sim, const struct state_file *stat
     struct suspension *s = &sim->suspension;
     struct particles *p = &s->particles;
     bool relisted;
-    if (!scene_place(sim, states, 0, e) || !neighbours_find(&s->neighbours, &s->box, p, &relisted, e))
+    if (!place(s, states, 0, e) || !neighbours_find(&s->neighbours, &s->box, p, &relisted, e))
         return false;
     for (int k = 0; k < s->force_count; k++)            /* the drags leave the resistances that their noises need */
         if (!s->force[k]->noise)
@@ -198,8 +213,9 @@ bool evaluate_case(const char *case_folder, const char *out_folder, struct error
     if (!sim)
         error_out_of_memory(e);
     else if (!error_raised(e) && scene_build(scene, &options, sim, e)) {
-        snprintf(sim->destination.folder, sizeof sim->destination.folder, "%s", out_folder);
-        if (protocol == 0)
+        if (!destination_make(&sim->destination, out_folder, e))
+            ;
+        else if (protocol == 0)
             evaluate_forces(sim, states, &contacts, e);
         else if (protocol == 1)
             evaluate_noise(sim, states, draws, e);

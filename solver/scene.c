@@ -26,17 +26,17 @@ static const struct force_row {
 
 static const struct dynamics *const dynamics_rows[] = { &verlet };
 
+static const struct observer_row { const char *key; struct observer *(*make)(struct settings *s, struct suspension *of, struct error *e); }
+observer_rows[] = { { "stress", stress_table_new }, { "states", trajectory_new }, { "dump", dump_new } };
+
 /* ---- the parts of a scene ---- */
 
-static void build_fluid(struct settings *root, struct suspension *s, struct error *e)
+static bool build_fluid(struct settings *root, struct suspension *s, struct error *e)
 {
     struct settings fluid = settings_child(root, "fluid", e);
-    if (fluid.node && settings_has(&fluid, "viscosity"))
-        s->viscosity = settings_at_least(&fluid, "viscosity", 0.0, e);
-    if (fluid.node && settings_has(&fluid, "kT"))
-        s->kT = settings_at_least(&fluid, "kT", 0.0, e);
-    if (fluid.node)
-        settings_done(&fluid, e);
+    s->viscosity = settings_has(&fluid, "viscosity") ? settings_at_least(&fluid, "viscosity", 0.0, e) : 0.0;
+    s->kT = settings_has(&fluid, "kT") ? settings_at_least(&fluid, "kT", 0.0, e) : 0.0;
+    return settings_done(&fluid, e);
 }
 
 static bool build_box(struct settings *root, struct suspension *s, struct error *e)
@@ -64,7 +64,7 @@ static bool build_box(struct settings *root, struct suspension *s, struct error 
     return !error_raised(e) && box_new(&s->box, &cell, periodic, &gradient, e);
 }
 
-static void build_species(struct settings *root, struct particles *p, struct error *e)
+static bool build_species(struct settings *root, struct particles *p, struct error *e)
 {
     const int kinds = settings_length(root, "species", e);
     if (!error_raised(e) && (kinds < 1 || kinds > MAX_SPECIES))
@@ -76,9 +76,10 @@ static void build_species(struct settings *root, struct particles *p, struct err
         settings_done(&kind, e);
         p->kind[p->species_count++] = species_sphere(name, radius, density);
     }
+    return !error_raised(e);
 }
 
-static void build_forces(struct settings *root, struct suspension *s, struct error *e)
+static bool build_forces(struct settings *root, struct suspension *s, struct error *e)
 {
     struct settings forces = settings_child(root, "forces", e);
     s->overlap_limit = 0.1;
@@ -99,45 +100,10 @@ static void build_forces(struct settings *root, struct suspension *s, struct err
         suspension_take(s, force);
         s->rotates = s->rotates || force->rotates;
     }
-    if (forces.node)
-        settings_done(&forces, e);
+    return settings_done(&forces, e);
 }
 
-static void build_start(struct settings *root, const char *scene_path, const struct scene_options *options, struct simulation *sim,
-                        struct error *e)
-{
-    struct suspension *s = &sim->suspension;
-    struct settings start = settings_child(root, "start", e);
-    s->start_time = start.node ? settings_number_or(&start, "time", 0.0, e) : 0.0;
-    box_set_time(&s->box, s->start_time);
-    box_remap(&s->box);
-    const bool thermal = start.node && settings_flag_or(&start, "thermal", false, e);
-    const bool given = start.node && settings_has(&start, "file"), drawn = start.node && settings_has(&start, "random");
-    if (options->states)
-        return;
-    if (given == drawn) {
-        error_raise(e, ERROR_INPUT, "start must have either file or random");
-        return;
-    }
-    if (drawn) {
-        struct settings random = settings_child(&start, "random", e);
-        if (random.node)
-            random_start(&random, s, e);
-    } else {
-        const char *file = settings_text(&start, "file", e), *slash = strrchr(scene_path, '/');
-        char path[512];
-        snprintf(path, sizeof path, "%.*s%s", *file == '/' || !slash ? 0 : (int)(slash - scene_path + 1), scene_path, file);
-        struct state_file *states = error_raised(e) ? NULL : state_file_read(path, e);
-        if (states)
-            state_file_place(states, 0, s, e);
-        state_file_free(states);
-    }
-    settings_done(&start, e);
-    if (thermal && !error_raised(e))
-        thermal_start(s);
-}
-
-static void build_dynamics(struct settings *root, struct simulation *sim, struct settings *chosen, struct error *e)
+static bool build_dynamics(struct settings *root, struct simulation *sim, struct settings *chosen, struct error *e)
 {
     static const char *const rotations[] = { "auto", "on", "off", NULL };
     struct settings dynamics = settings_child(root, "dynamics", e);
@@ -146,19 +112,16 @@ static void build_dynamics(struct settings *root, struct simulation *sim, struct
             sim->dynamics = dynamics_rows[k];
             *chosen = settings_child(&dynamics, dynamics_rows[k]->name, e);
         }
-    if (dynamics.node)
-        settings_done(&dynamics, e);
-    if (!error_raised(e) && !(sim->dynamics && chosen->node))
+    if (settings_done(&dynamics, e) && !chosen->node)
         error_raise(e, ERROR_INPUT, "dynamics must name one equation of motion: verlet");
-    if (error_raised(e))
-        return;
     const int rotation = settings_has(chosen, "rotation") ? settings_choice(chosen, "rotation", rotations, e) : 0;
     if (rotation == 2 && sim->suspension.rotates)
         settings_refuse(chosen, "rotation", e, "must be \"auto\" or \"on\": a force of this scene turns particles");
     sim->suspension.rotates = sim->suspension.rotates || rotation == 1;
+    return !error_raised(e);
 }
 
-static void choose_step(struct settings *chosen, struct suspension *s, struct error *e)
+static bool choose_step(struct settings *chosen, struct suspension *s, struct error *e)
 {
     if (settings_is_text(chosen, "dt", "auto")) {
         s->dt = step_advised(s);
@@ -166,18 +129,16 @@ static void choose_step(struct settings *chosen, struct suspension *s, struct er
             settings_refuse(chosen, "dt", e, "but nothing in this scene sets a time scale; give a number");
     } else
         s->dt = settings_positive(chosen, "dt", e);
-    settings_done(chosen, e);
+    return settings_done(chosen, e);
 }
 
-static void build_run(struct settings *root, struct simulation *sim, struct error *e)
+static bool build_run(struct settings *root, struct simulation *sim, struct error *e)
 {
     struct settings run = settings_child(root, "run", e);
     const struct suspension *s = &sim->suspension;
-    if (!run.node) {
-        error_raise(e, ERROR_INPUT, "run is missing; it must have steps, time or strain");
-        return;
-    }
     double duration = 0.0;
+    if (!run.node)
+        return error_raise(e, ERROR_INPUT, "run is missing; it must have steps, time or strain");
     if (settings_has(&run, "steps"))
         sim->last_step = settings_whole(&run, "steps", 0, INT64_C(1) << 47, e);
     else if (settings_has(&run, "strain")) {
@@ -188,66 +149,48 @@ static void build_run(struct settings *root, struct simulation *sim, struct erro
         duration = settings_at_least(&run, "time", 0.0, e);
     if (duration > 0.0 && !error_raised(e))
         sim->last_step = (int64_t)ceil(duration / s->dt * (1.0 - 1e-12));
-    settings_done(&run, e);
+    return settings_done(&run, e);
 }
 
-static void build_output(struct settings *root, struct simulation *sim, struct error *e)
+static bool build_output(struct settings *root, struct simulation *sim, struct error *e)
 {
-    struct settings output = settings_child(root, "output", e), part;
-    struct suspension *s = &sim->suspension;
-    if (!output.node)
-        return;
-    if ((part = settings_child(&output, "stress", e)).node) {
-        sim->observer[sim->observer_count++] = stress_table_new(&part, s, e);
+    struct settings output = settings_child(root, "output", e);
+    for (size_t k = 0; k < sizeof observer_rows / sizeof *observer_rows && output.node; k++) {
+        struct settings part = settings_child(&output, observer_rows[k].key, e);
+        if (!part.node || error_raised(e))
+            continue;
+        sim->observer[sim->observer_count++] = observer_rows[k].make(&part, &sim->suspension, e);
         settings_done(&part, e);
     }
-    if ((part = settings_child(&output, "states", e)).node) {
-        sim->observer[sim->observer_count++] = trajectory_new(&part, s, e);
-        settings_done(&part, e);
-    }
-    if ((part = settings_child(&output, "dump", e)).node) {
-        sim->observer[sim->observer_count++] = dump_new(&part, s, e);
-        settings_done(&part, e);
-    }
-    settings_done(&output, e);
+    return settings_done(&output, e);
 }
 
 /* ---- all together ---- */
 
-static void build(struct settings *root, const char *path, const struct scene_options *options, struct simulation *sim, struct error *e)
+static bool build_key(struct settings *root, struct suspension *s, struct error *e)
 {
-    struct suspension *s = &sim->suspension;
-    struct settings chosen = { .node = NULL };
-    snprintf(sim->about, sizeof sim->about, "%s", settings_text(root, "about", e));
-    s->dimensions = settings_has(root, "dimensions") ? (int)settings_whole(root, "dimensions", 2, 3, e) : 3;
-    build_fluid(root, s, e);
     if (settings_has(root, "seed"))
         s->key.seed = (uint32_t)settings_whole(root, "seed", 0, UINT32_MAX, e);
     else if (s->kT > 0.0)
         error_raise(e, ERROR_INPUT, "seed is missing; it must be a whole number, for fluid.kT > 0 draws random numbers");
     if (settings_has(root, "realisation"))
         s->key.realisation = (uint32_t)settings_whole(root, "realisation", 0, 16777215, e);
+    return !error_raised(e);
+}
+
+static bool build(struct settings *root, const char *path, const struct scene_options *options, struct simulation *sim, struct error *e)
+{
+    struct suspension *s = &sim->suspension;
+    struct settings chosen = { .node = NULL };
+    snprintf(sim->about, sizeof sim->about, "%s", settings_text(root, "about", e));
+    s->dimensions = settings_has(root, "dimensions") ? (int)settings_whole(root, "dimensions", 2, 3, e) : 3;
     s->kinetic_origin = stress_origin(&s->stress, "kinetic");
-    if (error_raised(e) || !build_box(root, s, e))
-        return;
-    build_species(root, &s->particles, e);
-    if (!error_raised(e))
-        build_forces(root, s, e);
-    if (!error_raised(e))
-        build_dynamics(root, sim, &chosen, e);
-    if (!error_raised(e))
-        build_start(root, path, options, sim, e);
-    if (!error_raised(e))
-        choose_step(&chosen, s, e);
-    settings_has(root, "shear");
-    settings_has(root, "run");
+    settings_has(root, "run");                  /* known keys, also where only forces are asked for */
     settings_has(root, "output");
-    if (!error_raised(e) && !options->frozen) {
-        build_run(root, sim, e);
-        build_output(root, sim, e);
-    }
-    if (settings_done(root, e) && !options->states)
-        neighbours_start(&s->neighbours, &s->box, &s->particles, e);
+    return build_fluid(root, s, e) && build_key(root, s, e) && build_box(root, s, e) && build_species(root, &s->particles, e) &&
+           build_forces(root, s, e) && build_dynamics(root, sim, &chosen, e) && suspension_start(root, path, options->states, s, e) &&
+           choose_step(&chosen, s, e) && (options->frozen || (build_run(root, sim, e) && build_output(root, sim, e))) &&
+           settings_done(root, e) && (options->states || neighbours_start(&s->neighbours, &s->box, &s->particles, e));
 }
 
 bool scene_build(const char *path, const struct scene_options *options, struct simulation *sim, struct error *e)
@@ -259,10 +202,4 @@ bool scene_build(const char *path, const struct scene_options *options, struct s
     build(&root, path, options, sim, e);
     settings_unload(&root);
     return error_within(e, path);
-}
-
-bool scene_place(struct simulation *sim, const struct state_file *states, int state, struct error *e)
-{
-    struct suspension *s = &sim->suspension;
-    return state_file_place(states, state, s, e) && neighbours_start(&s->neighbours, &s->box, &s->particles, e);
 }

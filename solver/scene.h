@@ -15,7 +15,4 @@ struct scene_options {
 /* Builds what the scene at `path` names. On failure nothing has been written anywhere. */
 bool scene_build(const char *path, const struct scene_options *options, struct simulation *sim, struct error *e);
 
-/* The scene's particles replaced by one configuration of a file. */
-bool scene_place(struct simulation *sim, const struct state_file *states, int state, struct error *e);
-
 #endif

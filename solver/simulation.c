@@ -1,5 +1,4 @@
 #include "simulation.h"
-
 #include "core/step_limit.h"
 
 static bool is_due(struct observer *o, int64_t step)
@@ -41,19 +40,7 @@ static bool sound(const struct simulation *sim, bool relisted, struct error *e)
         return error_raise(e, ERROR_RUN, "particles %d and %d overlap by %.3g of the smaller radius at time %.9g (step %lld); the limit is %g: "
                            "stiffen the contact, slow the flow or shorten dt", near->deepest_tag[0], near->deepest_tag[1], near->deepest,
                            s->box.time, (long long)s->step, s->overlap_limit);
-    if (!relisted || step_surely_stable(s, s->dt))
-        return true;
-    const struct step_limit limit = step_limit_of(s, e);
-    if (error_raised(e) || s->dt < limit.dt)
-        return !error_raised(e);
-    char whom[80];
-    if (limit.tag)
-        snprintf(whom, sizeof whom, "particle %d with %d near neighbours", limit.tag, limit.neighbours);
-    else
-        snprintf(whom, sizeof whom, "%s", limit.neighbours ? "a lone pair in contact" : "a lone particle");
-    return error_raise(e, ERROR_RUN,
-                       "dynamics.%s.dt is %g; at time %.9g it must be below %.4g, the limit that %s sets for %s: take dt at most %.2g, or \"auto\"",
-                       sim->dynamics->name, s->dt, s->box.time, limit.dt, limit.force, whom, 0.5 * limit.dt);
+    return !relisted || step_is_allowed(s, sim->dynamics->name, e);
 }
 
 bool simulation_begin(struct simulation *sim, struct error *e)
@@ -88,9 +75,8 @@ bool simulation_run(struct simulation *sim, struct error *e)
 
 bool simulation_close(struct simulation *sim, struct error *e)
 {
-    for (int k = 0; k < sim->observer_count; k++)
-        if (sim->observer[k])
-            sim->observer[k]->close(sim->observer[k], e);
+    for (int k = 0; k < sim->observer_count && sim->observer[k]; k++)
+        sim->observer[k]->close(sim->observer[k], e);
     suspension_free(&sim->suspension);
     return !error_raised(e);
 }

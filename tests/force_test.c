@@ -157,7 +157,7 @@ static void step_limit_is_where_it_blows_up(void)
         }
         drop(sim);
     }
-    check_true(grew[0] < 0.1 && grew[1] > 2.0, "below the limit it settles, above it grows");
+    check_true(grew[1] > 20.0 * grew[0], "below the limit it settles, above it grows");
 }
 
 static void unstable_steps_are_refused(void)

@@ -141,6 +141,5 @@ void box_wrap(const struct box *b, struct particles *p)
 
 double box_width(const struct box *b, int axis)
 {
-    return 1.0 / sqrt(b->inverse.m[axis][0] * b->inverse.m[axis][0] + b->inverse.m[axis][1] * b->inverse.m[axis][1] +
-                      b->inverse.m[axis][2] * b->inverse.m[axis][2]);
+    return 1.0 / norm(vec(b->inverse.m[axis][0], b->inverse.m[axis][1], b->inverse.m[axis][2]));
 }

@@ -39,9 +39,8 @@ static bool outdated(const struct neighbours *n, const struct box *box, const st
         return true;
     const mat3 F = box_deformation(box, box->time - n->listed_time);
     double shear = 0.0;
-    for (int r = 0; r < 3; r++)
-        for (int c = 0; c < 3; c++)
-            shear += (F.m[r][c] - (r == c)) * (F.m[r][c] - (r == c));
+    for (int k = 0; k < 9; k++)
+        shear += (F.m[k / 3][k % 3] - (k % 4 == 0)) * (F.m[k / 3][k % 3] - (k % 4 == 0));
     shear = sqrt(shear);
     const double allowed = 0.5 * (n->skin * (1.0 - shear) - shear * n->largest_range);
     if (allowed <= 0.0)
@@ -56,7 +55,7 @@ static bool outdated(const struct neighbours *n, const struct box *box, const st
 
 /* ---- making a list: cells of at least range + skin, whose neighbours hold all neighbours ---- */
 
-struct grid { int cells[3], reach[3]; int *first, *next, (*cell)[3]; };     /* particles of a cell as a linked list */
+struct grid { int cells[3], reach[3], span[3]; int *first, *next, (*cell)[3]; };    /* particles of a cell as a linked list */
 
 static bool grid_new(struct grid *g, const struct box *box, const struct particles *p, double distance, struct error *e)
 {
@@ -66,6 +65,7 @@ static bool grid_new(struct grid *g, const struct box *box, const struct particl
         g->cells[k] = (int)fmax(1.0, fmin(most, floor(box_width(box, k) / distance)));
         /* An open direction sees no images, so its own cells and the next are enough even where they are few. */
         g->reach[k] = box->periodic[k] ? (int)ceil(distance * g->cells[k] / box_width(box, k)) : 1;
+        g->span[k] = box->periodic[k] ? (g->reach[k] + g->cells[k] - 1) / g->cells[k] : 0;      /* farthest image seen */
         total *= (size_t)g->cells[k];
     }
     g->first = malloc(total * sizeof *g->first);
@@ -77,11 +77,8 @@ static bool grid_new(struct grid *g, const struct box *box, const struct particl
     for (int i = p->count - 1; i >= 0; i--) {
         const vec3 inside = mat3_times(&box->inverse, p->position[i]);
         const double fraction[3] = { inside.x, inside.y, inside.z };
-        for (int k = 0; k < 3; k++) {
-            /* Clamping keeps neighbours within one cell of each other where particles are outside an open cell. */
-            const double c = fmin(fmax(floor(fraction[k] * g->cells[k]), 0.0), g->cells[k] - 1.0);
-            g->cell[i][k] = (int)c;
-        }
+        for (int k = 0; k < 3; k++)     /* clamped: neighbours stay within one cell of each other outside an open cell too */
+            g->cell[i][k] = (int)fmin(fmax(floor(fraction[k] * g->cells[k]), 0.0), g->cells[k] - 1.0);
         int *head = &g->first[(g->cell[i][2] * g->cells[1] + g->cell[i][1]) * g->cells[0] + g->cell[i][0]];
         g->next[i] = *head;
         *head = i;
@@ -89,33 +86,10 @@ static bool grid_new(struct grid *g, const struct box *box, const struct particl
     return true;
 }
 
-static void grid_free(struct grid *g)
-{
-    free(g->first);
-    free(g->next);
-    free(g->cell);
-}
-
 /* Index of an image in the table of offsets, which spans -span..span in each direction. */
 static int offset_index(const int shift[3], const int span[3])
 {
     return ((shift[2] + span[2]) * (2 * span[1] + 1) + shift[1] + span[1]) * (2 * span[0] + 1) + shift[0] + span[0];
-}
-
-static bool offsets_new(struct neighbours *n, const int span[3], struct error *e)
-{
-    n->offset_count = (2 * span[0] + 1) * (2 * span[1] + 1) * (2 * span[2] + 1);
-    struct image_offset *table = realloc(n->offset, (size_t)n->offset_count * sizeof *table);
-    if (!table)
-        return error_out_of_memory(e);
-    n->offset = table;
-    for (int z = -span[2]; z <= span[2]; z++)
-        for (int y = -span[1]; y <= span[1]; y++)
-            for (int x = -span[0]; x <= span[0]; x++) {
-                const int shift[3] = { x, y, z };
-                memcpy(table[offset_index(shift, span)].shift, shift, sizeof shift);
-            }
-    return true;
 }
 
 static void offsets_move(struct neighbours *n, const struct box *box)
@@ -126,57 +100,60 @@ static void offsets_move(struct neighbours *n, const struct box *box)
     }
 }
 
-/* Cells of the never-remapped lattice between i and this image of j: invariant under wrapping and remap. */
-static void lattice_between(const struct box *box, const struct particles *p, int i, int j, const int shift[3], int lattice[3])
+static bool offsets_new(struct neighbours *n, const struct box *box, const int span[3], struct error *e)
 {
-    box_lattice_shift(box, shift, lattice);
-    for (int k = 0; k < 3; k++)
-        lattice[k] += p->image[i][k] - p->image[j][k];
+    n->offset_count = (2 * span[0] + 1) * (2 * span[1] + 1) * (2 * span[2] + 1);
+    struct image_offset *table = realloc(n->offset, (size_t)n->offset_count * sizeof *table);
+    if (!table)
+        return error_out_of_memory(e);
+    n->offset = table;
+    for (int k = 0; k < n->offset_count; k++) {
+        const int x = 2 * span[0] + 1, y = 2 * span[1] + 1;
+        const int shift[3] = { k % x - span[0], k / x % y - span[1], k / (x * y) - span[2] };
+        memcpy(table[k].shift, shift, sizeof shift);
+    }
+    offsets_move(n, box);
+    return true;
 }
 
-/* Fifteen bits tell apart images that can be near at the same time: counts modulo 32 in each direction. */
-static uint32_t image_key(const int lattice[3])
-{
-    return ((uint32_t)lattice[0] & 31u) | ((uint32_t)lattice[1] & 31u) << 5 | ((uint32_t)lattice[2] & 31u) << 10;
-}
-
-static bool list_pair(struct neighbours *n, const struct box *box, const struct particles *p, int i, int j, const int shift[3],
+static void list_pair(struct neighbours *n, const struct box *box, const struct particles *p, int i, int j, const int shift[3],
                       const int span[3], struct error *e)
 {
     const vec3 r = minus(plus(p->position[j], n->offset[offset_index(shift, span)].position), p->position[i]);
     const double range = n->range[p->species[i]][p->species[j]], listed = range + n->skin;
     if (dot(r, r) > listed * listed || range <= 0.0)
-        return true;
+        return;
     if (p->body && p->body[i] >= 0 && p->body[i] == p->body[j])
-        return true;                                                /* a rigid body does not press on itself */
+        return;                                                     /* a rigid body does not press on itself */
     if (n->count == n->room) {
         n->room = n->room ? 2 * n->room : 1024;
         struct candidate *more = realloc(n->candidate, (size_t)n->room * sizeof *more);
-        if (!more)
-            return error_out_of_memory(e);
+        if (!more) {
+            n->room = n->count;
+            error_out_of_memory(e);
+            return;
+        }
         n->candidate = more;
     }
-    int lattice[3], to[3] = { shift[0], shift[1], shift[2] };
-    lattice_between(box, p, i, j, shift, lattice);
+    /* Cells of the never-remapped lattice between i and this image of j: invariant under wrapping and remap. */
+    int lattice[3];
+    box_lattice_shift(box, shift, lattice);
+    for (int k = 0; k < 3; k++)
+        lattice[k] += p->image[i][k] - p->image[j][k];
     /* One orientation for each pair, whatever the search order: smaller tag first; a self-image by the sign of its lattice shift. */
-    const int sign = lattice[0] ? lattice[0] : lattice[1] ? lattice[1] : lattice[2];
-    if (p->tag[i] > p->tag[j] || (i == j && sign < 0)) {
-        const int swap = i;
-        i = j;
-        j = swap;
-        for (int k = 0; k < 3; k++) {
-            to[k] = -to[k];
-            lattice[k] = -lattice[k];
-        }
-    }
-    n->candidate[n->count++] = (struct candidate){ i, j, offset_index(to, span), image_key(lattice),
+    const int first = lattice[0] ? lattice[0] : lattice[1] ? lattice[1] : lattice[2];
+    const int sign = p->tag[i] > p->tag[j] || (i == j && first < 0) ? -1 : 1;
+    const int to[3] = { sign * shift[0], sign * shift[1], sign * shift[2] };
+    /* Fifteen bits tell apart images that can be near at the same time: counts modulo 32 in each direction. */
+    const uint32_t key = ((uint32_t)(sign * lattice[0]) & 31u) | ((uint32_t)(sign * lattice[1]) & 31u) << 5 |
+                         ((uint32_t)(sign * lattice[2]) & 31u) << 10;
+    n->candidate[n->count++] = (struct candidate){ sign > 0 ? i : j, sign > 0 ? j : i, offset_index(to, span), key,
                                                    radius_of(p, i) + radius_of(p, j), range * range };
-    return true;
 }
 
 /* Pairs of particle i with all of one cell. In its own cell, unshifted, each pair once: those later in the list. */
-static bool list_cell(struct neighbours *n, const struct box *box, const struct particles *p, const struct grid *g, int i,
-                      const int step[3], const int span[3], struct error *e)
+static void list_cell(struct neighbours *n, const struct box *box, const struct particles *p, const struct grid *g, int i,
+                      const int step[3], struct error *e)
 {
     int shift[3], cell[3];
     for (int k = 0; k < 3; k++) {
@@ -184,34 +161,27 @@ static bool list_cell(struct neighbours *n, const struct box *box, const struct 
         shift[k] = box->periodic[k] ? (int)floor((double)at / g->cells[k]) : 0;
         cell[k] = at - shift[k] * g->cells[k];
         if (cell[k] < 0 || cell[k] >= g->cells[k])
-            return true;                                            /* outside an open cell */
+            return;                                                 /* outside an open cell */
     }
     const bool own = !step[0] && !step[1] && !step[2];
     int j = own ? g->next[i] : g->first[(cell[2] * g->cells[1] + cell[1]) * g->cells[0] + cell[0]];
     for (; j >= 0; j = g->next[j])
-        if (!list_pair(n, box, p, i, j, shift, span, e))
-            return false;
-    return true;
+        list_pair(n, box, p, i, j, shift, g->span, e);
 }
 
-static bool list_all(struct neighbours *n, const struct box *box, const struct particles *p, struct error *e)
+static void list_all(struct neighbours *n, const struct box *box, const struct particles *p, struct error *e)
 {
     struct grid g = { .first = NULL };
-    bool good = grid_new(&g, box, p, n->largest_range + n->skin, e);
-    int span[3];
-    for (int k = 0; k < 3; k++)
-        span[k] = !box->periodic[k] ? 0 : (g.reach[k] + g.cells[k] - 1) / g.cells[k];
-    good = good && offsets_new(n, span, e);
-    if (good)
-        offsets_move(n, box);
     n->count = 0;
-    for (int i = 0; good && i < p->count; i++)
-        for (int z = 0; good && z <= g.reach[2]; z++)               /* half of all cells around: the other half sees us */
-            for (int y = z ? -g.reach[1] : 0; good && y <= g.reach[1]; y++)
-                for (int x = z || y ? -g.reach[0] : 0; good && x <= g.reach[0]; x++)
-                    good = list_cell(n, box, p, &g, i, (const int[3]){ x, y, z }, span, e);
-    grid_free(&g);
-    return good;
+    if (grid_new(&g, box, p, n->largest_range + n->skin, e) && offsets_new(n, box, g.span, e))
+        for (int i = 0; i < p->count; i++)
+            for (int z = 0; z <= g.reach[2]; z++)                   /* half of all cells around: the other half sees us */
+                for (int y = z ? -g.reach[1] : 0; y <= g.reach[1]; y++)
+                    for (int x = z || y ? -g.reach[0] : 0; x <= g.reach[0]; x++)
+                        list_cell(n, box, p, &g, i, (const int[3]){ x, y, z }, e);
+    free(g.first);
+    free(g.next);
+    free(g.cell);
 }
 
 /* ---- history: carried from the old list to the new by (i, j, image) ---- */
@@ -225,56 +195,34 @@ static int by_pair(const void *left, const void *right)
 
 struct remembered { struct candidate key; vec3 history; };
 
-static bool carry_history(struct neighbours *n, const struct remembered *old, int old_count, struct error *e)
+/* The non-zero histories of the present list, sorted. NULL if there is no memory for them. */
+static struct remembered *remember(const struct neighbours *n, int *kept, struct error *e)
+{
+    struct remembered *old = malloc(((size_t)n->count + 1) * sizeof *old);
+    *kept = 0;
+    for (int k = 0; old && n->made && k < n->count; k++)
+        if (dot(n->history[k], n->history[k]) > 0.0)
+            old[(*kept)++] = (struct remembered){ n->candidate[k], n->history[k] };
+    if (old)
+        qsort(old, (size_t)*kept, sizeof *old, by_pair);
+    else
+        error_out_of_memory(e);
+    return old;
+}
+
+static void recall(struct neighbours *n, const struct remembered *old, int kept, struct error *e)
 {
     vec3 *fresh = realloc(n->history, ((size_t)n->room + 1) * sizeof *fresh);
-    if (!fresh)
-        return error_out_of_memory(e);
+    if (!fresh) {
+        error_out_of_memory(e);
+        return;
+    }
     n->history = fresh;
     for (int k = 0; k < n->count; k++) {
-        const struct remembered *found = bsearch(&n->candidate[k], old, (size_t)old_count, sizeof *old, by_pair);
+        const struct remembered *found = bsearch(&n->candidate[k], old, (size_t)kept, sizeof *old, by_pair);
         n->history[k] = found ? found->history : vec(0, 0, 0);
     }
-    return true;
 }
-
-static bool make_list(struct neighbours *n, struct box *box, struct particles *p, struct error *e)
-{
-    for (int i = 0; i < p->count; i++)
-        if (!isfinite(dot(p->position[i], p->position[i])) || !isfinite(dot(p->velocity[i], p->velocity[i])))
-            return error_raise(e, ERROR_RUN, "particle %d left the numbers at time %.9g: position (%g, %g, %g), velocity (%g, %g, %g)",
-                               p->tag[i], box->time, p->position[i].x, p->position[i].y, p->position[i].z,
-                               p->velocity[i].x, p->velocity[i].y, p->velocity[i].z);
-    struct remembered *old = NULL;
-    int kept = 0;
-    if (n->keeps_history && n->made) {
-        old = malloc(((size_t)n->count + 1) * sizeof *old);
-        if (!old)
-            return error_out_of_memory(e);
-        for (int k = 0; k < n->count; k++)
-            if (dot(n->history[k], n->history[k]) > 0.0)
-                old[kept++] = (struct remembered){ n->candidate[k], n->history[k] };
-        qsort(old, (size_t)kept, sizeof *old, by_pair);
-    }
-    /* A list that lives less than ten steps costs more than the pairs of a thicker skin, and the other way round. */
-    if (n->made && n->steps_since < 10)
-        n->skin = fmin(1.5 * n->skin, 0.25 * n->largest_range);
-    else if (n->made && n->steps_since > 200)
-        n->skin = fmax(0.8 * n->skin, 0.01 * n->largest_range);
-    box_remap(box);
-    box_wrap(box, p);
-    bool good = n->largest_range <= 0.0 || list_all(n, box, p, e);
-    if (good && n->keeps_history)
-        good = carry_history(n, old, kept, e);
-    free(old);
-    memcpy(n->listed_at, p->position, (size_t)p->count * sizeof *p->position);
-    n->listed_time = box->time;
-    n->steps_since = 0;
-    n->made++;
-    return good;
-}
-
-/* ---- each step ---- */
 
 static bool near_room(struct near_pairs *near, int room, struct error *e)
 {
@@ -287,6 +235,36 @@ static bool near_room(struct near_pairs *near, int room, struct error *e)
     near->resistance = near->keeps_resistance ? malloc((size_t)near->room * sizeof *near->resistance) : NULL;
     return (near->pair && (near->resistance || !near->keeps_resistance)) || error_out_of_memory(e);
 }
+
+static bool make_list(struct neighbours *n, struct box *box, struct particles *p, struct error *e)
+{
+    for (int i = 0; i < p->count; i++)
+        if (!isfinite(dot(p->position[i], p->position[i])) || !isfinite(dot(p->velocity[i], p->velocity[i])))
+            return error_raise(e, ERROR_RUN, "particle %d left the numbers at time %.9g: position (%g, %g, %g), velocity (%g, %g, %g)",
+                               p->tag[i], box->time, p->position[i].x, p->position[i].y, p->position[i].z,
+                               p->velocity[i].x, p->velocity[i].y, p->velocity[i].z);
+    /* A list that lives less than ten steps costs more than the pairs of a thicker skin, and the other way round. */
+    if (n->made && n->steps_since < 10)
+        n->skin = fmin(1.5 * n->skin, 0.25 * n->largest_range);
+    else if (n->made && n->steps_since > 200)
+        n->skin = fmax(0.8 * n->skin, 0.01 * n->largest_range);
+    box_remap(box);
+    box_wrap(box, p);
+    int kept = 0;
+    struct remembered *old = n->keeps_history ? remember(n, &kept, e) : NULL;
+    if (n->largest_range > 0.0 && !error_raised(e))
+        list_all(n, box, p, e);
+    if (old && !error_raised(e))
+        recall(n, old, kept, e);
+    free(old);
+    memcpy(n->listed_at, p->position, (size_t)p->count * sizeof *p->position);
+    n->listed_time = box->time;
+    n->steps_since = 0;
+    n->made++;
+    return !error_raised(e) && near_room(&n->near, n->count, e);
+}
+
+/* ---- each step ---- */
 
 bool neighbours_find(struct neighbours *n, struct box *box, struct particles *p, bool *relisted, struct error *e)
 {
@@ -302,9 +280,6 @@ bool neighbours_find(struct neighbours *n, struct box *box, struct particles *p,
     n->steps_since++;
     if (box->flowing)
         offsets_move(n, box);
-    if (!near_room(near, n->count, e))
-        return false;
-
     for (int k = 0; k < n->count; k++) {
         const struct candidate *c = &n->candidate[k];
         const struct image_offset *offset = &n->offset[c->offset];
@@ -332,12 +307,4 @@ bool neighbours_find(struct neighbours *n, struct box *box, struct particles *p,
             .image = n->many_images ? c->image : 0 };
     }
     return true;
-}
-
-vec3 *neighbours_history(struct neighbours *n, const struct particles *p, int tag_i, int tag_j)
-{
-    for (int k = 0; k < n->count && n->history; k++)
-        if (p->tag[n->candidate[k].i] == tag_i && p->tag[n->candidate[k].j] == tag_j)
-            return &n->history[k];
-    return NULL;
 }

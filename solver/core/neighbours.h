@@ -44,7 +44,4 @@ void neighbours_free(struct neighbours *n);
 /* Fills n->near for the present positions; remaps, wraps and makes a new list first where needed. `*relisted` says so. */
 bool neighbours_find(struct neighbours *n, struct box *box, struct particles *p, bool *relisted, struct error *e);
 
-/* The history slot of a pair of tags (first image found), to set initial contacts; NULL if they are not neighbours. */
-vec3 *neighbours_history(struct neighbours *n, const struct particles *p, int tag_i, int tag_j);
-
 #endif

@@ -14,7 +14,7 @@
 #include <stdint.h>
 
 enum noise_law { NOISE_GAUSSIAN, NOISE_UNIFORM };
-extern const char *const noise_laws[];                                      /* their names, NULL at the end */
+#define NOISE_LAWS { "gaussian", "uniform", NULL }                           /* their names in a scene */
 
 /* One stream per thing that draws: two streams never share a number. */
 enum noise_stream { NOISE_START, NOISE_THERMAL, NOISE_DRAG, NOISE_LUBRICATION };

@@ -1,5 +1,6 @@
 #include "core/step_limit.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -154,7 +155,8 @@ struct step_limit step_limit_of(const struct suspension *s, struct error *e)
     return all;
 }
 
-bool step_surely_stable(const struct suspension *s, double dt)
+/* The cheap test, traces for eigenvalues, that every new list is put to: true if dt is certainly stable. */
+static bool surely_stable(const struct suspension *s, double dt)
 {
     const struct particles *p = &s->particles;
     const struct near_pairs *near = &s->neighbours.near;
@@ -216,4 +218,20 @@ double step_bias(const struct suspension *s, double dt)
         for (int b = 0; b < p->species_count && p->count > 1; b++)
             eps = fmax(eps, response_of(s, NULL, a, b, -1e-300).resistance.X_A * dt * (1.0 / p->kind[a].mass + 1.0 / p->kind[b].mass));
     return eps;
+}
+
+bool step_is_allowed(const struct suspension *s, const char *scheme, struct error *e)
+{
+    if (surely_stable(s, s->dt))
+        return true;
+    const struct step_limit limit = step_limit_of(s, e);
+    if (error_raised(e) || s->dt < limit.dt)
+        return !error_raised(e);
+    char whom[80];
+    if (limit.tag)
+        snprintf(whom, sizeof whom, "particle %d with %d near neighbours", limit.tag, limit.neighbours);
+    else
+        snprintf(whom, sizeof whom, "%s", limit.neighbours ? "a lone pair in contact" : "a lone particle");
+    return error_raise(e, ERROR_RUN, "dynamics.%s.dt is %g; at time %.9g it must be below %.4g, the limit that %s sets for %s: "
+                       "take dt at most %.2g, or \"auto\"", scheme, s->dt, s->box.time, limit.dt, limit.force, whom, 0.5 * limit.dt);
 }

@@ -19,8 +19,8 @@ struct step_limit {
     double friction_rate, stiffness_rate;   /* g [1/T] and w^2 [1/T^2] there */
 };
 
-/* True if dt is certainly stable: the cheap test (traces for eigenvalues) that every new list is put to. */
-bool step_surely_stable(const struct suspension *s, double dt);
+/* Is the suspension's dt below the limit? If not, the error names the force, the particle, the limit and what to do. */
+bool step_is_allowed(const struct suspension *s, const char *scheme, struct error *e);
 struct step_limit step_limit_of(const struct suspension *s, struct error *e);
 
 /* The step of "dt": "auto": a stable and accurate one also when particles press together. Docs: docs/time-step.md */

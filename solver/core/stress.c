@@ -16,9 +16,8 @@ void stress_clear(struct stress *s)
 void stress_finish(struct stress *s, double volume)
 {
     for (int o = 0; o < s->origins; o++)
-        for (int r = 0; r < 3; r++)
-            for (int c = 0; c < 3; c++)
-                s->sum[o].m[r][c] /= volume;
+        for (int k = 0; k < 9; k++)
+            s->sum[o].m[k / 3][k % 3] /= volume;
 }
 
 void stress_kinetic(struct stress *s, int origin, const struct box *box, const struct particles *p)

@@ -9,7 +9,6 @@
  * Source: Stokes (1851), Einstein (1906); Li (2026) eq 3.5, 3.6. No hindrance: neighbours act by lubrication only.
  */
 #include "forces/drag.h"
-
 #include "forces/forces.h"
 
 #include <stdlib.h>
@@ -29,9 +28,8 @@ static void drag_add(const struct force *self, struct particles *p, struct near_
     }
     for (int i = 0; stress && i < p->count; i++) {
         const double a = radius_of(p, i), strength = 20.0 / 3.0 * M_PI * law->viscosity * a * a * a;
-        for (int r = 0; r < 3; r++)
-            for (int c = 0; c < 3; c++)
-                stress->sum[self->origin[0]].m[r][c] += strength * box->strain_rate.m[r][c];
+        for (int k = 0; k < 9; k++)
+            stress->sum[self->origin[0]].m[k / 3][k % 3] += strength * box->strain_rate.m[k / 3][k % 3];
     }
 }
 

@@ -41,6 +41,7 @@ static void drag_noise_add(const struct force *self, struct particles *p, struct
 /* "drag_noise": { "distribution": "gaussian" } */
 struct force *drag_noise_new(struct settings *s, const struct suspension *in, struct error *e)
 {
+    static const char *const laws[] = NOISE_LAWS;
     struct drag_noise *noise = calloc(1, sizeof *noise);
     if (!noise)
         return error_out_of_memory(e), NULL;
@@ -48,7 +49,7 @@ struct force *drag_noise_new(struct settings *s, const struct suspension *in, st
     noise->drag = (const struct drag *)suspension_force(in, "drag");
     noise->kT = in->kT;
     noise->key = in->key;
-    noise->law = (enum noise_law)settings_choice(s, "distribution", noise_laws, e);
+    noise->law = (enum noise_law)settings_choice(s, "distribution", laws, e);
     if (!noise->drag)
         settings_refuse(s, "", e, "needs forces.drag, whose fluctuation it is");
     return &noise->base;

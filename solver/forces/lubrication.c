@@ -15,7 +15,6 @@
  * The stress is F_i (x) (x_j - x_i): at this order the same as the sum of the two stresslets.
  */
 #include "forces/lubrication.h"
-
 #include "forces/forces.h"
 
 #include <stdlib.h>

@@ -12,7 +12,6 @@
  * <T_i T_j> would come out as 2 B_1 B_2/Y_A - C_12 instead of C_12: four times too large for equal spheres.
  */
 #include "forces/lubrication.h"
-
 #include "forces/forces.h"
 
 #include <stdlib.h>
@@ -55,6 +54,7 @@ static void lubrication_noise_add(const struct force *self, struct particles *p,
 /* "lubrication_noise": { "distribution": "gaussian" } */
 struct force *lubrication_noise_new(struct settings *s, const struct suspension *in, struct error *e)
 {
+    static const char *const laws[] = NOISE_LAWS;
     struct lubrication_noise *noise = calloc(1, sizeof *noise);
     if (!noise)
         return error_out_of_memory(e), NULL;
@@ -63,7 +63,7 @@ struct force *lubrication_noise_new(struct settings *s, const struct suspension 
     noise->drag = (const struct lubrication *)suspension_force(in, "lubrication");
     noise->kT = in->kT;
     noise->key = in->key;
-    noise->law = (enum noise_law)settings_choice(s, "distribution", noise_laws, e);
+    noise->law = (enum noise_law)settings_choice(s, "distribution", laws, e);
     if (!noise->drag)
         settings_refuse(s, "", e, "needs forces.lubrication, whose fluctuation it is");
     return &noise->base;

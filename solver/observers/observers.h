@@ -6,7 +6,7 @@
 #include "core/settings.h"
 #include "output/table.h"
 
-struct observer *stress_table_new(struct settings *s, const struct suspension *of, struct error *e);
+struct observer *stress_table_new(struct settings *s, struct suspension *of, struct error *e);
 struct observer *trajectory_new(struct settings *s, struct suspension *of, struct error *e);
 
 #endif

@@ -49,7 +49,7 @@ static bool stress_table_close(struct observer *self, struct error *e)
 }
 
 /* "stress": { "every": 100 } */
-struct observer *stress_table_new(struct settings *s, const struct suspension *of, struct error *e)
+struct observer *stress_table_new(struct settings *s, struct suspension *of, struct error *e)
 {
     struct stress_table *o = calloc(1, sizeof *o);
     if (!o)

@@ -46,7 +46,7 @@ static bool dump_close(struct observer *self, struct error *e)
 }
 
 /* "dump": { "every": 1000 } */
-struct observer *dump_new(struct settings *s, const struct suspension *of, struct error *e)
+struct observer *dump_new(struct settings *s, struct suspension *of, struct error *e)
 {
     struct dump *d = calloc(1, sizeof *d);
     if (!d)

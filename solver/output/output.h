@@ -6,7 +6,7 @@
 #include "core/settings.h"
 #include "output/table.h"
 
-struct observer *dump_new(struct settings *s, const struct suspension *of, struct error *e);
+struct observer *dump_new(struct settings *s, struct suspension *of, struct error *e);
 
 /* A line on the terminal that says how far a run is; silent where the error output is no terminal. */
 struct progress { double started, shown; int64_t first, last; bool wanted; };

@@ -2,6 +2,15 @@
 
 #include <errno.h>
 #include <string.h>
+#include <sys/stat.h>
+
+bool destination_make(struct destination *to, const char *folder, struct error *e)
+{
+    snprintf(to->folder, sizeof to->folder, "%s", folder);
+    if (mkdir(folder, 0777) == 0 || errno == EEXIST)
+        return true;
+    return error_raise(e, ERROR_RUN, "%s cannot be made: %s", folder, strerror(errno));
+}
 
 bool table_open(struct table *t, const struct destination *to, const char *name, struct error *e)
 {

@@ -6,6 +6,9 @@
 
 #include <stdio.h>
 
+/* The folder that a run writes to; made if it is not there. */
+bool destination_make(struct destination *to, const char *folder, struct error *e);
+
 struct table { FILE *file; char path[512]; };
 
 bool table_open(struct table *t, const struct destination *to, const char *name, struct error *e);

@@ -8,6 +8,9 @@
 /* The velocity gradient of the scene's list of simple shears (`root.shear`). */
 mat3 steady_shear(struct settings *root, struct error *e);
 
+/* The scene's `start`: its time, and particles from a file (relative to the scene's) or at random; none if `states` will give them. */
+bool suspension_start(struct settings *root, const char *scene_path, const char *states, struct suspension *s, struct error *e);
+
 /* Non-overlapping spheres at random, in a box scaled to the volume fraction. */
 bool random_start(struct settings *s, struct suspension *in, struct error *e);
 

@@ -1,3 +1,0 @@
-#include "core/noise.h"
-
-const char *const noise_laws[] = { "gaussian", "uniform", 0 };
