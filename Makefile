@@ -55,11 +55,14 @@ test: all $B/unit-tests ## build and run the unit tests
 validate: all ## run the fast tier against our own solver; report in build/report/index.html
 	$B/gate run --candidate "$B/shear --evaluate" --jobs $(JOBS) --report $B/report
 
+bench: all ## instructions and time per particle-step, against stock LAMMPS; build/bench.txt
+	tools/bench/bench.sh $B
+
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
 
 clean: ## remove build/
 	rm -rf $B
 
-.PHONY: all test validate help clean
+.PHONY: all test validate bench help clean
 -include $(SOLVER_O:.o=.d) $(GATE_O:.o=.d) $(TESTS_O:.o=.d)
