@@ -119,12 +119,12 @@ prepare equal
            "$(awk -F': ' '/model name/ { print $2; exit }' /proc/cpuinfo)"
     printf '1000 spheres, phi 0.5, constants of Table 4.1, dt 1e-4; median of %d interleaved repeats, user time, one core\n\n' "$repeats"
     printf '%-24s %11s %9s %13s %11s %8s   %-13s %s\n' scene 'Mstep/s' 'us' 'instructions' 'LAMMPS us' ratio 'LAMMPS deck' remark
-    row 'S1 contact+drag'          mixed s1 5000 s1-langevin 4000 'same physics: gran/hooke, fix langevin on temp/deform'
-    row 'S1 contact+drag'          mixed s1 5000 s1-viscous  8000 'different physics: gran/hooke, fix viscous (drag towards rest)'
-    row 'S2 friction+lub+drag'     mixed s2 1500 s2-poly      600 'different physics: gran/hooke/history + lubricate/poly'
-    row 'S2 equal spheres'         equal s2 1500 s2-equal    2000 'different physics (terms in h ln h and in the strain rate): gran/hooke/history + lubricate'
-    row 'S3 S2+noise, gaussian'    mixed s3 1000 s3-poly      300 'different physics: s2-poly + brownian/poly (uniform numbers)'
-    row 'S3 S2+noise, uniform'     mixed s3-uniform 1000 s3-poly 300 'different physics: s2-poly + brownian/poly (uniform numbers)'
+    row 'S1 contact+drag'          mixed s1 30000 s1-langevin 6000 'same physics: gran/hooke, fix langevin on temp/deform'
+    row 'S1 contact+drag'          mixed s1 30000 s1-viscous 15000 'different physics: gran/hooke, fix viscous (drag towards rest)'
+    row 'S2 friction+lub+drag'     mixed s2 4000 s2-poly      600 'different physics: gran/hooke/history + lubricate/poly'
+    row 'S2 equal spheres'         equal s2 4000 s2-equal    2000 'different physics (terms in h ln h and in the strain rate): gran/hooke/history + lubricate'
+    row 'S3 S2+noise, gaussian'    mixed s3 1500 s3-poly      300 'different physics: s2-poly + brownian/poly (uniform numbers)'
+    row 'S3 S2+noise, uniform'     mixed s3-uniform 2000 s3-poly 300 'different physics: s2-poly + brownian/poly (uniform numbers)'
 } | tee "$B/bench.txt.new"
 mv "$B/bench.txt.new" "$B/bench.txt"
 echo "bench: instructions per particle-step, speed against LAMMPS: $(paste -sd ";" "$work/headline" | sed "s/;/; /g")" | tee -a "$B/bench.txt"

@@ -22,6 +22,14 @@ static json_t *read_json(const char *folder, const char *name)
     return j;
 }
 
+static const char *text(const json_t *object, const char *key)
+{
+    const char *value = json_string_value(json_object_get(object, key));
+    if (!value || !value[0])
+        fail("a text is missing for \"%s\"", key);
+    return value;
+}
+
 static double number(const json_t *object, const char *key)
 {
     const json_t *value = json_object_get(object, key);
@@ -53,7 +61,7 @@ static void read_forces(struct task *t, const json_t *scene)
         t->friction = number(f, "friction");
         if (t->friction > 0) {
             t->tangential_stiffness = number(f, "tangential_stiffness");
-            if (strcmp(json_string_value(json_object_get(f, "lever")), "radius"))
+            if (strcmp(text(f, "lever"), "radius"))
                 unsupported("gran/hooke/history turns contacts about the full radii: only \"lever\": \"radius\"");
         }
     }
@@ -72,8 +80,8 @@ static void read_box(struct task *t, const json_t *scene)
     if (json_array_size(shears) > 1)
         unsupported("this adapter takes one simple shear, not a superposition");
     if (shear) {
-        t->axis[0] = json_string_value(json_object_get(shear, "flow"))[0] - 'x';
-        t->axis[1] = json_string_value(json_object_get(shear, "gradient"))[0] - 'x';
+        t->axis[0] = text(shear, "flow")[0] - 'x';
+        t->axis[1] = text(shear, "gradient")[0] - 'x';
         t->axis[2] = 3 - t->axis[0] - t->axis[1];
         t->handed = (t->axis[1] - t->axis[0] + 3) % 3 == 1 ? 1 : -1;
         t->rate = number(shear, "rate");
@@ -161,13 +169,30 @@ static void read_states(struct task *t, const char *folder, const char *name)
     t->count /= t->states;
 }
 
+/* Whether any two spheres of the only state touch, images included: neighbouring cells are enough for the nearest one. */
+static bool touching(const struct task *t)
+{
+    for (int i = 0; i < t->count; i++)
+        for (int j = i + 1; j < t->count; j++) {
+            const struct particle *p = &t->particle[i], *q = &t->particle[j];
+            const double reach = t->radius[p->species - 1] + t->radius[q->species - 1], dy = q->x[1] - p->x[1];
+            const double z = remainder(q->x[2] - p->x[2], t->edge[2]);
+            for (int n = (int)lround(-dy / t->edge[1]) - 1; n <= (int)lround(-dy / t->edge[1]) + 1; n++) {
+                const double y = dy + n * t->edge[1], x = remainder(q->x[0] - p->x[0] + n * t->tilt, t->edge[0]);
+                if (x * x + y * y + z * z < reach * reach)
+                    return true;
+            }
+        }
+    return false;
+}
+
 struct task read_task(const char *case_dir)
 {
     struct task t = { .axis = { 0, 1, 2 }, .handed = 1 };
     const json_t *job = read_json(case_dir, "case.json"), *species;
-    const char *protocol = json_string_value(json_object_get(job, "protocol"));
+    const char *protocol = text(job, "protocol");
     const char *states = json_string_value(json_object_get(job, "states"));
-    json_t *scene = read_json(case_dir, json_string_value(json_object_get(job, "scene")));
+    json_t *scene = read_json(case_dir, text(job, "scene"));
     if (strcmp(protocol, "forces") && strcmp(protocol, "run"))
         unsupported("this adapter does not answer protocol \"%s\"", protocol);
     t.frozen = strcmp(protocol, "forces") == 0;
@@ -194,6 +219,8 @@ struct task read_task(const char *case_dir)
     if (!t.frozen)
         read_protocol(&t, scene);
     read_states(&t, case_dir, states);
+    if (!t.frozen && t.friction > 0 && touching(&t))
+        unsupported("a frictional run must start without contacts: LAMMPS would advance their history once before the first step");
     json_decref(scene);
     json_decref((json_t *)job);
     return t;
