@@ -1,6 +1,7 @@
 /* Asking the candidate: writes the case folder of docs/formats.md, starts it, and records whatever is not an answer. */
 #include "check.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -47,6 +48,8 @@ bool check_ask(struct check_run *run, const char *name, const struct question *q
 {
     char question[128], ask[PATH_LENGTH], folder[PATH_LENGTH], why[WHY_LENGTH];
     snprintf(question, sizeof question, "%s%s", name, run->attempt > 1 ? "-rerun" : "");
+    for (char *c = question; *c; c++) /* an adapter that forgets to quote its arguments should still work */
+        *c = isalnum((unsigned char)*c) || *c == '.' ? *c : '-';
     path_join(ask, run->work, question);
     path_join(folder, ask, "case");
     path_join(out, ask, "out");

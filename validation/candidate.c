@@ -2,7 +2,6 @@
  * Starting a candidate and surviving it. The child leads its own process group, so that a candidate that starts helpers
  * (a shell, mpirun) dies as a whole; what it says goes to a file in place of a pipe, so that it can never block on us.
  */
-#define _XOPEN_SOURCE 700 /* nftw */
 #include "candidate.h"
 
 #include <errno.h>

@@ -1,5 +1,4 @@
 /* Reading the cases of the suite. A wrong case is an error of the suite itself, so everything is checked, tersely. */
-#define _XOPEN_SOURCE 700 /* nftw */
 #include "case.h"
 
 #include <ftw.h>

@@ -1,5 +1,4 @@
 /* Reasons of failures, folders, file hashes, and dotted paths inside a JSON scene. */
-#define _XOPEN_SOURCE 700 /* nftw */
 #include "tables.h"
 
 #include <errno.h>
@@ -33,7 +32,8 @@ bool folder_make(const char *path, char why[WHY_LENGTH])
         if (here != '/' && here != '\0')
             continue;
         *at = '\0';
-        if (mkdir(part, 0777) != 0 && errno != EEXIST)
+        struct stat there;
+        if (mkdir(part, 0777) != 0 && !(errno == EEXIST && stat(part, &there) == 0 && S_ISDIR(there.st_mode)))
             return why_not(why, "cannot make the folder %s: %s", part, strerror(errno));
         *at = here;
         if (here == '\0')

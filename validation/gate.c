@@ -3,7 +3,6 @@
  *
  * This file is the command line: which cases, in which order, against which candidate, and what is written where.
  */
-#define _XOPEN_SOURCE 700 /* realpath, readlink */
 #include "run.h"
 #include "terminal.h"
 
@@ -31,7 +30,7 @@ static const char help[] =
     "  --jobs N              worker processes (default 1)\n"
     "  --seed-offset K       other seeds for everything random (default 0: those written in the cases)\n"
     "  --report DIR          index.html and junit.xml (default build/report)\n"
-    "  --work DIR            what candidates are given and answer (default build/gate)\n"
+    "  --work DIR            what candidates are given and answer (default build/cases)\n"
     "  --suite-dir DIR       the folder that holds cases/ and flags.json (default: validation/, found from the program)\n"
     "\n"
     "Exit codes: 0 pass, 1 fail, 2 wrong usage, 3 only inconclusive, 77 nothing supported.\n";
@@ -247,8 +246,9 @@ static int with_suite(const char *verb, const struct options *o)
     const struct gate_case **chosen = calloc(suite.count, sizeof *chosen);
     size_t count = 0;
     for (size_t k = 0; k < suite.count && code == 0; k++) {
-        if (wanted(o, &suite.item[k]))
-            chosen[count++] = &suite.item[k];
+        if (!wanted(o, &suite.item[k]))
+            continue;
+        chosen[count++] = &suite.item[k];
         if (!check_find(suite.item[k].check))
             code = usage("%s/case.json: there is no check '%s'", suite.item[k].folder, suite.item[k].check);
     }
@@ -271,7 +271,7 @@ int main(int argc, char **argv)
     if (strcmp(verb, "run") != 0 && strcmp(verb, "list") != 0)
         return usage("%s'%s'; see gate --help", *verb ? "unknown command " : "say `run` or `list`, not ", verb);
 
-    struct options o = { .report = "build/report", .work = "build/gate", .jobs = 1 };
+    struct options o = { .report = "build/report", .work = "build/cases", .jobs = 1 };
     find_suite(o.suite_dir);
     for (int k = 2; k < argc; k += 2) {
         if (strcmp(argv[k], "--help") == 0)

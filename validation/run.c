@@ -2,7 +2,6 @@
  * Worker processes. A worker runs one case and leaves results.json in the case's work folder; the gate reads it when the
  * worker has ended. A worker that dies without it has found a mistake in the gate, and that is a failed case too.
  */
-#define _POSIX_C_SOURCE 200809L
 #include "run.h"
 
 #include <math.h>

@@ -1,5 +1,4 @@
 /* Lines for people and logs. The columns are fixed so that a log can be read, and cut, by eye. */
-#define _POSIX_C_SOURCE 200809L
 #include "terminal.h"
 
 #include <math.h>

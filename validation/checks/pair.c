@@ -1,4 +1,8 @@
 /* Layer 1: the table of its checks; the files pair_*.c hold them. */
-#include "check.h"
+#include "pair_checks.h"
 
-const struct check pair_checks[] = { { NULL, NULL } };
+const struct check pair_checks[] = {
+    { "pair-forces", pair_forces }, { "pair-resistance", pair_resistance }, { "pair-frames", pair_frames },
+    { "pair-rigid", pair_rigid },   { "pair-crowd", pair_crowd },           { "pair-drag", pair_drag },
+    { "pair-units", pair_units },   { NULL, NULL },
+};

@@ -1,0 +1,344 @@
+/*
+ * Many spheres of several sizes in a strained periodic cell, against a brute-force sum over all images of all pairs.
+ * Lost neighbours, doubled pairs, images that are not the nearest one, and a sphere that meets its own image in a small
+ * cell all show here; so does any force that is right alone and wrong in company. The stress of every origin is summed
+ * in the same loop, with each pair once.
+ */
+#include "pair_checks.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { CONTACT, LUBRICATION, DRAG, FORCES };
+enum { CONTACT_NORMAL, CONTACT_TANGENTIAL, LUBRICATION_STRESS, DRAG_STRESS, KINETIC, ORIGINS };
+static const char *const force_name[FORCES] = { "contact", "lubrication", "drag" };
+static const char *const origin_name[ORIGINS] = { "contact_normal", "contact_tangential", "lubrication", "drag", "kinetic" };
+
+struct sphere { struct theory_sphere s; int species; };
+
+struct crowd {
+    struct model m;
+    bool present[FORCES];
+    size_t count;
+    struct sphere *sphere;
+    struct contact_row *history;
+    size_t histories;
+    double (*expected)[FORCES][6], (*scale)[FORCES][2];     /* by sphere */
+    double stress[ORIGINS][9], stress_scale[ORIGINS];
+    size_t pairs, self_pairs;
+};
+
+/* Calls `visit` for every image of j (shift not zero, and one of each opposite two, if j is i) within the longest range. */
+typedef void visitor(struct crowd *c, size_t i, size_t j, const double shift[3], void *data);
+
+static void each_image(struct crowd *c, size_t i, size_t j, double range, visitor *visit, void *data)
+{
+    double d[3], across[3][3];
+    long low[3], high[3];
+    for (int k = 0; k < 3; k++)
+        d[k] = c->sphere[j].s.x[k] - c->sphere[i].s.x[k];
+    for (int v = 0; v < 3; v++) { /* reciprocal vectors: how many planes of the lattice lie within range */
+        cross(c->m.cell[(v + 1) % 3], c->m.cell[(v + 2) % 3], across[v]);
+        const double height = dot(across[v], c->m.cell[v]), at = dot(across[v], d) / height;
+        const double reach = range * norm(across[v]) / fabs(height);
+        low[v] = lround(ceil(-at - reach));
+        high[v] = lround(floor(-at + reach));
+    }
+    for (long p = low[0]; p <= high[0]; p++)
+        for (long q = low[1]; q <= high[1]; q++)
+            for (long s = low[2]; s <= high[2]; s++) {
+                double shift[3], r[3];
+                for (int k = 0; k < 3; k++) {
+                    shift[k] = (double)p * c->m.cell[0][k] + (double)q * c->m.cell[1][k] + (double)s * c->m.cell[2][k];
+                    r[k] = d[k] + shift[k];
+                }
+                const bool half = p > 0 || (p == 0 && (q > 0 || (q == 0 && s > 0)));
+                if (norm(r) < range && (i != j || half))
+                    visit(c, i, j, shift, data);
+            }
+}
+
+static double range_of(const struct crowd *c, size_t i, size_t j)
+{
+    const double outer = c->present[LUBRICATION] ? c->m.lubrication.outer_gap : 0;
+    return (c->sphere[i].s.radius + c->sphere[j].s.radius) * (1 + 0.5 * outer);
+}
+
+static void note_gap(struct crowd *c, size_t i, size_t j, const double shift[3], void *smallest)
+{
+    double r[3];
+    for (int k = 0; k < 3; k++)
+        r[k] = c->sphere[j].s.x[k] + shift[k] - c->sphere[i].s.x[k];
+    const double sizes = c->sphere[i].s.radius + c->sphere[j].s.radius;
+    *(double *)smallest = fmin(*(double *)smallest, norm(r) / sizes - 1);
+}
+
+/* Random places, largest spheres first, overlaps of at most `overlap` of the sizes allowed. */
+static void place(struct crowd *c, gsl_rng *random, double overlap)
+{
+    const size_t wanted = c->count;
+    c->count = 0;
+    for (int tries = 0; c->count < wanted && tries < 200000; tries++) {
+        struct sphere *s = &c->sphere[c->count];
+        for (int k = 0; k < 3; k++)
+            s->s.x[k] = 0;
+        for (int v = 0; v < 3; v++) {
+            const double along = gsl_rng_uniform(random);
+            for (int k = 0; k < 3; k++)
+                s->s.x[k] += along * c->m.cell[v][k];
+        }
+        double smallest = INFINITY;
+        for (size_t j = 0; j < c->count && smallest >= -overlap; j++)
+            each_image(c, j, c->count, range_of(c, j, c->count), note_gap, &smallest);
+        c->count += smallest >= -overlap;
+    }
+}
+
+static void note_contact(struct crowd *c, size_t i, size_t j, const double shift[3], void *data)
+{
+    double smallest = 0;
+    note_gap(c, i, j, shift, &smallest);
+    if (smallest >= 0)
+        return;
+    const bool back = c->histories % 2;     /* every other contact is listed as (j, i) */
+    struct contact_row *h = &c->history[c->histories++];
+    *h = (struct contact_row){ .i = (int)(back ? j : i) + 1, .j = (int)(back ? i : j) + 1 };
+    random_vector(data, 0.01 * c->sphere[i].s.radius, h->s);
+}
+
+static void make(struct check_run *run, const json_t *variant, struct crowd *c)
+{
+    gsl_rng *random = pair_random(run);
+    c->count = (size_t)scene_number(variant, "count", 40);
+    const double overlap = scene_number(variant, "overlap", 0.02), drift = scene_number(variant, "speed", 0.9);
+    c->sphere = calloc(c->count, sizeof *c->sphere);
+    for (size_t k = 0; k < c->count; k++) { /* species in blocks, the last (largest) first */
+        c->sphere[k].species = (int)(c->m.species - k * c->m.species / c->count);
+        c->sphere[k].s.radius = c->m.radius[c->sphere[k].species - 1];
+    }
+    const json_t *fixed = json_object_get(variant, "positions");
+    if (!fixed)
+        place(c, random, overlap);
+    for (size_t k = 0; k < c->count; k++) {
+        for (size_t d = 0; fixed && d < 3; d++)
+            c->sphere[k].s.x[d] = json_number_value(json_array_get(json_array_get(fixed, k), d));
+        random_vector(random, drift, c->sphere[k].s.u);
+        random_vector(random, drift, c->sphere[k].s.w);
+    }
+    c->history = calloc(c->count * c->count + 1, sizeof *c->history);
+    if (c->present[CONTACT] && c->m.contact.friction > 0)
+        for (size_t i = 0; i < c->count; i++)
+            for (size_t j = i; j < c->count; j++)
+                each_image(c, i, j, range_of(c, i, j), note_contact, random);
+    gsl_rng_free(random);
+}
+
+static void history_of(const struct crowd *c, size_t i, size_t j, struct pair_state *p)
+{
+    for (size_t k = 0; k < c->histories; k++) {
+        const struct contact_row *h = &c->history[k];
+        const bool same = h->i == (int)i + 1 && h->j == (int)j + 1, back = h->j == (int)i + 1 && h->i == (int)j + 1;
+        for (int d = 0; d < 3 && (same || back); d++)
+            p->history[d] = same ? h->s[d] : -h->s[d];
+        p->with_history = p->with_history || same || back;
+    }
+}
+
+static void book_pair(struct crowd *c, int force, size_t i, size_t j, const struct pair_state *p, const struct expected *e)
+{
+    double n[3], r;
+    pair_geometry(p, n, &r);
+    const double *f = e->pair.force[0], normal = dot(f, n);
+    for (int side = 0; side < 2; side++) {
+        const size_t k = side ? j : i;
+        for (int d = 0; d < 3; d++) {
+            c->expected[k][force][d] += e->pair.force[side][d];
+            c->expected[k][force][3 + d] += e->pair.torque[side][d];
+        }
+        c->scale[k][force][0] += e->force_scale;
+        c->scale[k][force][1] += e->torque_scale;
+    }
+    const int origin = force == CONTACT ? CONTACT_NORMAL : LUBRICATION_STRESS;
+    for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++) {
+            const double along = force == CONTACT ? normal * n[a] : f[a];
+            c->stress[origin][3 * a + b] += along * r * n[b];
+            if (force == CONTACT)
+                c->stress[CONTACT_TANGENTIAL][3 * a + b] += (f[a] - along) * r * n[b];
+        }
+    c->stress_scale[origin] += e->force_scale * r;
+    c->stress_scale[CONTACT_TANGENTIAL] += e->force_scale * r;
+}
+
+static void add_pair(struct crowd *c, size_t i, size_t j, const double shift[3], void *data)
+{
+    (void)data;
+    struct pair_state p = { .s = { c->sphere[i].s, c->sphere[j].s } };
+    struct expected e = { 0 };
+    double change[3];
+    apply(c->m.gradient, shift, change);
+    for (int k = 0; k < 3; k++) {
+        p.s[1].x[k] += shift[k];
+        p.s[1].u[k] += change[k];
+    }
+    history_of(c, i, j, &p);
+    if (c->present[LUBRICATION]) {
+        expect_lubrication(&c->m, &p, &e);
+        e.force_scale += e.torque_scale / (p.s[0].radius + p.s[1].radius);
+        book_pair(c, LUBRICATION, i, j, &p, &e);
+    }
+    if (c->present[CONTACT]) {
+        expect_contact(&c->m, &p, &e);
+        book_pair(c, CONTACT, i, j, &p, &e);
+    }
+    c->pairs++;
+    c->self_pairs += i == j;
+}
+
+static void add_single(struct crowd *c, size_t k)
+{
+    const struct theory_sphere *s = &c->sphere[k].s;
+    double stresslet[3][3], flow[3];
+    apply(c->m.gradient, s->x, flow);
+    if (c->present[DRAG]) {
+        double *f = c->expected[k][DRAG];
+        theory_drag(c->m.viscosity, c->m.drag_torque, (const double (*)[3])c->m.gradient, s, f, f + 3, stresslet);
+        c->scale[k][DRAG][0] = 6 * M_PI * c->m.viscosity * s->radius * (norm(s->u) + norm(flow) + 1);
+        c->scale[k][DRAG][1] = 8 * M_PI * c->m.viscosity * pow(s->radius, 3) * (norm(s->w) + 1);
+        for (int a = 0; a < 9; a++)
+            c->stress[DRAG_STRESS][a] += stresslet[a / 3][a % 3];
+        c->stress_scale[DRAG_STRESS] += c->scale[k][DRAG][1];
+    }
+    const double mass = 4 * M_PI / 3 * c->m.density[c->sphere[k].species - 1] * pow(s->radius, 3);
+    for (int a = 0; a < 9; a++)
+        c->stress[KINETIC][a] -= mass * (s->u[a / 3] - flow[a / 3]) * (s->u[a % 3] - flow[a % 3]);
+    c->stress_scale[KINETIC] += mass * (dot(s->u, s->u) + dot(flow, flow));
+}
+
+static void expect(struct crowd *c)
+{
+    c->expected = calloc(c->count, sizeof *c->expected);
+    c->scale = calloc(c->count, sizeof *c->scale);
+    for (size_t i = 0; i < c->count; i++) {
+        add_single(c, i);
+        for (size_t j = i; j < c->count; j++)
+            each_image(c, i, j, range_of(c, i, j) * (1 + 1e-12), add_pair, NULL);
+    }
+}
+
+static void judge_forces(struct check_run *run, const struct crowd *c, const char *variant, const struct forces *f)
+{
+    struct worst total = WORST_NONE;
+    char what[128];
+    for (int force = 0; force < FORCES; force++) {
+        struct worst w = WORST_NONE;
+        if (!c->present[force])
+            continue;
+        for (size_t k = 0; k < c->count; k++) {
+            const double *own = forces_at(f, 0, force_name[force], (int)k + 1), *scale = c->scale[k][force];
+            worst_see_vector(&w, own, c->expected[k][force], 3, scale[0], k);
+            worst_see_vector(&w, own + 3, c->expected[k][force] + 3, 3, scale[1], k);
+        }
+        snprintf(what, sizeof what, "%s: %s", variant, force_name[force]);
+        check_error(run, MODEL, what, w.measured, w.expected, w.error, run->gate_case->tolerance,
+                    "%s: %s on sphere %zu (radius %g) is %s; %zu spheres, %zu pairs in range, %zu of them a sphere and its own "
+                    "image: a neighbour is lost, doubled, or seen with the wrong image velocity, if single pairs are right",
+                    variant, force_name[force], w.at + 1, c->sphere[w.at].s.radius, compare(&w), c->count, c->pairs,
+                    c->self_pairs);
+    }
+    for (size_t k = 0; k < c->count; k++)
+        for (int d = 0; d < 6; d++) {
+            double sum = 0, scale = 1e-300;
+            for (int force = 0; force < FORCES; force++)
+                if (c->present[force]) {
+                    sum += forces_at(f, 0, force_name[force], (int)k + 1)[d];
+                    scale += c->scale[k][force][d / 3];
+                }
+            worst_see(&total, forces_at(f, 0, "total", (int)k + 1)[d], sum, scale, k);
+        }
+    snprintf(what, sizeof what, "%s: total = sum of parts", variant);
+    check_error(run, INVARIANT, what, total.measured, total.expected, total.error, run->gate_case->tolerance,
+                "%s: `total` on sphere %zu is not the sum of the forces listed: %s", variant, total.at + 1, compare(&total));
+}
+
+static void judge_stress(struct check_run *run, const struct crowd *c, const char *variant, const struct pair_answer *answer)
+{
+    const bool wanted[ORIGINS] = { c->present[CONTACT], c->present[CONTACT] && c->m.contact.friction > 0,
+                                   c->present[LUBRICATION], c->present[DRAG], true };
+    for (int origin = 0; origin < ORIGINS; origin++) {
+        if (!wanted[origin])
+            continue;
+        double *own = answer_stress(run, answer, 1, origin_name[origin], c->m.volume);
+        if (!own)
+            return;
+        struct worst w = WORST_NONE;
+        char what[128];
+        worst_see_vector(&w, own, c->stress[origin], 9, c->stress_scale[origin] + 1e-300, 0);
+        snprintf(what, sizeof what, "%s: %s stress", variant, origin_name[origin]);
+        check_error(run, MODEL, what, w.measured, w.expected, w.error, run->gate_case->tolerance,
+                    "%s: the %s stress times the volume is %s", variant, origin_name[origin], compare(&w));
+        free(own);
+    }
+}
+
+static bool ask(struct check_run *run, const char *variant, json_t *scene, const struct crowd *c, struct pair_answer *answer)
+{
+    struct state_row *rows = calloc(c->count, sizeof *rows);
+    for (size_t k = 0; k < c->count; k++) {
+        rows[k] = (struct state_row){ .id = (int)k + 1, .species = c->sphere[k].species };
+        memcpy(rows[k].x, c->sphere[k].s.x, sizeof rows[k].x);
+        memcpy(rows[k].u, c->sphere[k].s.u, sizeof rows[k].u);
+        memcpy(rows[k].w, c->sphere[k].s.w, sizeof rows[k].w);
+    }
+    const struct question q = { .protocol = "forces", .scene = scene, .state = rows, .states = c->count, .contact = c->history,
+                                .contacts = c->histories };
+    bool good = check_ask(run, variant, &q, answer->out);
+    free(rows);
+    if (!good)
+        return false;
+    char wanted[128] = "total", path[PATH_LENGTH], why[WHY_LENGTH];
+    for (int force = 0; force < FORCES; force++)
+        if (c->present[force]) {
+            strcat(wanted, ",");
+            strcat(wanted, force_name[force]);
+        }
+    path_join(path, answer->out, "forces.csv");
+    good = forces_read(path, 1, c->count, wanted, &answer->forces, why);
+    if (!good)
+        check_garbage(run, why);
+    return good;
+}
+
+void pair_crowd(struct check_run *run)
+{
+    size_t k;
+    json_t *variant;
+    json_array_foreach(json_object_get(run->gate_case->parameters, "variants"), k, variant)
+    {
+        const char *name = json_string_value(json_object_get(variant, "name"));
+        json_t *scene = variant_scene(run->gate_case, variant);
+        struct crowd c = { 0 };
+        struct pair_answer answer = { 0 };
+        bool answered = name && model_read(run, scene, &c.m);
+        if (answered) {
+            const bool present[FORCES] = { c.m.has_contact, c.m.has_lubrication, c.m.has_drag };
+            memcpy(c.present, present, sizeof present);
+            make(run, variant, &c);
+            expect(&c);
+            answered = ask(run, name, scene, &c, &answer);
+        }
+        if (answered) {
+            judge_forces(run, &c, name, &answer.forces);
+            judge_stress(run, &c, name, &answer);
+        }
+        forces_free(&answer.forces);
+        free(c.sphere);
+        free(c.history);
+        free(c.expected);
+        free(c.scale);
+        json_decref(scene);
+        if (!answered)
+            return;
+    }
+}
