@@ -21,7 +21,7 @@ struct task {
     double rate;                        /* dU_flow/dx_gradient */
     int species_count;
     double radius[SPECIES_ROOM], density[SPECIES_ROOM];
-    bool contact, drag;
+    bool contact, drag, torque;
     double normal_stiffness, tangential_stiffness, friction;
     double time, dt;
     long steps, stress_every, states_every;     /* 0: not wanted */

@@ -9,7 +9,8 @@
  *              as lever arms. gran/hooke (no history) where there is no friction.
  *   drag       fix langevin at T = 0 is -(m/damp) u. damp = m/(6 pi eta a) of species 1, `scale` for the others. With the
  *              bias of compute temp/deform, u is taken relative to the box's flow h_rate * lamda = rate (y - ylo); the cell
- *              therefore starts at y = 0, so that this is U_inf. No torque (`omega yes` damps spins towards 0).
+ *              therefore starts at y = 0, so that this is U_inf. Torque only in a fluid at rest: `omega yes` is
+ *              -8 pi eta a^3 w (its 10/3 times 2/5 m a^2/damp), towards no spin.
  *   velocities laboratory ones, as ours. Image velocities need `remap v` and `comm_modify vel yes`.
  *   step       velocity Verlet; contact history and drag see positions at t + dt and half-step velocities.
  *   lagging    fix deform moves the cell at the end of a step, so the forces of step n + 1 see the cell of step n. Here a first
@@ -131,7 +132,7 @@ static void write_physics(FILE *f, const struct task *t, int state, const char *
         fprintf(f, "fix drag all langevin 0 0 %.17g 1", relaxation_time(t, 0));
         for (int k = 1; k < t->species_count; k++)
             fprintf(f, " scale %d %.17g", k + 1, relaxation_time(t, k) / relaxation_time(t, 0));
-        fprintf(f, "\nfix_modify drag temp c\n");
+        fprintf(f, " omega %s\nfix_modify drag temp c\n", t->torque ? "yes" : "no");
     }
 }
 

@@ -68,8 +68,9 @@ static void read_forces(struct task *t, const json_t *scene)
     if ((f = json_object_get(forces, "drag"))) {
         t->drag = true;
         t->viscosity = number(json_object_get(scene, "fluid"), "viscosity");
-        if (json_is_true(json_object_get(f, "torque")))
-            unsupported("fix langevin damps spins towards zero, not towards half the vorticity: \"torque\" must be false");
+        t->torque = json_is_true(json_object_get(f, "torque"));
+        if (t->torque && t->rate != 0)
+            unsupported("fix langevin damps spins towards zero, not towards half the vorticity: in shear \"torque\" must be false");
     }
 }
 

@@ -79,8 +79,15 @@ bool dense_ask_both(struct check_run *run, const char *name, const struct dense_
     const bool good = check_ask(run, label, &q, out[1]);
     run->candidate = own;
     run->candidate_seconds = after > seconds ? after : seconds;
-    if (!good && run->results.count)    /* a missing reference is an error of the set-up, never a skip */
-        run->results.item[run->results.count - 1].verdict = VERDICT_FAIL;
+    if (!good && run->results.count) {  /* a missing reference is an error of the set-up, never a skip */
+        struct result *r = &run->results.item[run->results.count - 1];
+        char said[WHY_LENGTH + PATH_LENGTH];
+        snprintf(said, sizeof said, "the reference, not the candidate, gave no answer ('%s', or name another in GATE_REFERENCE): %s",
+                 reference.command, r->sentence);
+        free(r->sentence);
+        r->sentence = strdup(said);
+        r->verdict = VERDICT_FAIL;
+    }
     return good;
 }
 
