@@ -1,28 +1,38 @@
 # sheargate: `make help` lists the targets.
 
-CC       ?= gcc
 VERSION  := 0.1.0
 COMMIT   := $(shell git rev-parse --short HEAD 2>/dev/null || echo unknown)
 JOBS     ?= $(shell nproc)
+B        ?= build
 
 # -std=c11 (not gnu11) also switches floating-point contraction off in gcc; said again for clang.
 # -fno-math-errno only tells the compiler that nobody reads errno after sqrt; results are the same bits.
 WARN     := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wstrict-prototypes -Wmissing-prototypes -Werror
-OPT      ?= -O2
-CFLAGS   ?= $(OPT) -g
+CFLAGS   ?= -O2 -g
 BASE     := -std=c11 -D_XOPEN_SOURCE=700 -ffp-contract=off -fno-math-errno $(WARN) -MMD -MP
-B        ?= build
 
 SOLVER   := $(wildcard solver/*.c solver/*/*.c)
 GATE     := $(wildcard validation/*.c validation/checks/*.c validation/theory/*.c)
 TESTS    := $(wildcard tests/*.c)
 LAMMPS   := $(wildcard tools/lammps/*.c)
+objects   = $(1:%.c=$B/obj/%.o)
+PROGRAMS := $B/shear $B/gate $B/lammps-candidate
+MAKE_ALL := $(MAKE) --no-print-directory -j$(JOBS)
 
-SOLVER_O := $(SOLVER:%.c=$B/obj/%.o)
-GATE_O   := $(GATE:%.c=$B/obj/%.o)
-TESTS_O  := $(TESTS:%.c=$B/obj/%.o)
+all: ## build the programs
+	@$(MAKE_ALL) $(PROGRAMS)
 
-all: $B/shear $B/gate $B/lammps-candidate ## build the programs
+setup: ## install what is missing (Debian packages; as root or with sudo)
+	@tools/setup.sh
+
+validate: all ## the fast tier against our own solver, and its report
+	$B/gate run --candidate "$B/shear --evaluate" --jobs $(JOBS) --report $B/report
+
+test: ## build and run the unit tests
+	@$(MAKE_ALL) $(PROGRAMS) $B/unit-tests
+	$B/unit-tests
+
+# ---- programs ----
 
 $B/obj/solver/%.o: solver/%.c
 	@mkdir -p $(@D)
@@ -36,27 +46,41 @@ $B/obj/tests/%.o: tests/%.c
 	@mkdir -p $(@D)
 	$(CC) $(BASE) $(CFLAGS) -Isolver -Ivalidation -Itests -c $< -o $@
 
-$B/shear: $(SOLVER_O)
+$B/obj/tools/%.o: tools/%.c
+	@mkdir -p $(@D)
+	$(CC) $(BASE) $(CFLAGS) -c $< -o $@
+
+$B/shear: $(call objects,$(SOLVER))
 	$(CC) $(CFLAGS) $^ -o $@ -ljansson -lm
 
-$B/gate: $(GATE_O)
+$B/gate: $(call objects,$(GATE))
 	$(CC) $(CFLAGS) $^ -o $@ -ljansson -lgsl -lgslcblas -lm
 
-$B/unit-tests: $(TESTS_O) $(filter-out $B/obj/solver/shear.o,$(SOLVER_O)) $(filter-out $B/obj/validation/gate.o,$(GATE_O))
+$B/lammps-candidate: $(call objects,$(LAMMPS))
+	$(CC) $(CFLAGS) $^ -o $@ -ljansson -lm
+
+$B/unit-tests: $(call objects,$(TESTS) $(filter-out solver/shear.c,$(SOLVER)) $(filter-out validation/gate.c,$(GATE)))
 	$(CC) $(CFLAGS) $^ -o $@ -lcunit -ljansson -lgsl -lgslcblas -lm
 
-$B/lammps-candidate: $(LAMMPS)
-	@mkdir -p $(@D)
-	$(CC) $(BASE) $(CFLAGS) $^ -o $@ -ljansson -lm
+# ---- measuring: each prints its figure on its last line and fails when its bar is not met ----
 
-test: all $B/unit-tests ## build and run the unit tests
-	$B/unit-tests
+lines: ## length of the tour through the solver (at most 2000 lines)
+	@tools/lines.sh
 
-validate: all ## run the fast tier against our own solver; report in build/report/index.html
-	$B/gate run --candidate "$B/shear --evaluate" --jobs $(JOBS) --report $B/report
+coverage: ## lines of solver/ that tests and fast tier execute (at least 85 %)
+	@tools/coverage.sh
 
-bench: all ## instructions and time per particle-step, against stock LAMMPS; build/bench.txt
-	tools/bench/bench.sh $B
+sanitize: ## unit tests and the gate's cases under address and undefined-behaviour sanitizers
+	@$(MAKE_ALL) B=$B/sanitize CFLAGS="-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all" $B/sanitize/unit-tests $B/sanitize/shear $B/sanitize/gate $B/sanitize/lammps-candidate
+	$B/sanitize/unit-tests
+	GATE_REFERENCE=$B/sanitize/lammps-candidate $B/sanitize/gate run --candidate "$B/sanitize/shear --evaluate" --jobs $(JOBS) --report $B/sanitize/report
+	@echo "sanitize: clean"
+
+memcheck: all ## valgrind on one run of everything at once
+	@tools/memcheck.sh
+
+bench: all ## particle-steps per second and instructions per particle-step, beside stock LAMMPS
+	@tools/bench/bench.sh $B
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
@@ -64,5 +88,5 @@ help: ## this list
 clean: ## remove build/
 	rm -rf $B
 
-.PHONY: all test validate bench help clean
--include $(SOLVER_O:.o=.d) $(GATE_O:.o=.d) $(TESTS_O:.o=.d)
+.PHONY: all setup validate test lines coverage sanitize memcheck bench help clean
+-include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS) $(LAMMPS)))
