@@ -179,21 +179,31 @@ void candidate_run(const struct candidate *c, const char *case_dir, const char *
     explain(c, answer);
 }
 
-void candidate_hash(const struct candidate *c, char hex[17])
+/* The program file behind the first word of the command, as the shell would find it. */
+static bool find_program(const char *command, char path[PATH_LENGTH])
 {
-    uint64_t hash = HASH_START;
-    for (const char *p = c->command; *p; p++)
-        hash = (hash ^ (unsigned char)*p) * UINT64_C(1099511628211);
-    const int n = (int)strcspn(c->command, " \t");
-    char path[PATH_LENGTH];
-    snprintf(path, sizeof path, "%.*s", n, c->command);
-    const char *folders = strchr(path, '/') ? NULL : getenv("PATH");
-    while (folders && *folders) { /* as the shell would find it */
+    const int n = (int)strcspn(command, " \t");
+    snprintf(path, PATH_LENGTH, "%.*s", n, command);
+    if (strchr(path, '/'))
+        return access(path, X_OK) == 0;
+    const char *folders = getenv("PATH");
+    while (folders && *folders) {
         const int length = (int)strcspn(folders, ":");
-        snprintf(path, sizeof path, "%.*s/%.*s", length, folders, n, c->command);
+        snprintf(path, PATH_LENGTH, "%.*s/%.*s", length, folders, n, command);
         if (access(path, X_OK) == 0)
-            break;
+            return true;
         folders += length + (folders[length] == ':');
     }
-    snprintf(hex, 17, "%016llx", (unsigned long long)file_hash(path, hash));
+    return false;
+}
+
+bool candidate_hash(const struct candidate *c, char hex[17])
+{
+    uint64_t hash = HASH_START;
+    char path[PATH_LENGTH];
+    for (const char *p = c->command; *p; p++)
+        hash = (hash ^ (unsigned char)*p) * UINT64_C(1099511628211);
+    const bool found = find_program(c->command, path);
+    snprintf(hex, 17, "%016llx", (unsigned long long)(found ? file_hash(path, hash) : hash));
+    return found;
 }

@@ -36,7 +36,10 @@ void candidate_run(const struct candidate *c, const char *case_dir, const char *
 /* From now on SIGINT, SIGTERM and SIGHUP end this process and the candidate it is running. */
 void candidate_stop_with_us(void);
 
-/* Hash of the program file behind the first word of the command (found in PATH) and of the command line; 16 hex digits. */
-void candidate_hash(const struct candidate *c, char hex[17]);
+/*
+ * Hash of the command line and of the program file behind its first word (found in PATH), as 16 hex digits. False if
+ * there is no such program.
+ */
+bool candidate_hash(const struct candidate *c, char hex[17]);
 
 #endif

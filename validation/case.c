@@ -51,8 +51,8 @@ bool case_lists(const json_t *words, const char *word)
     return false;
 }
 
-static const char *const known_keys[] = { "about", "layer", "check",      "tier",      "needs", "flags",
-                                          "scene", "seed",  "parameters", "tolerance", "p_values", "seconds" };
+static const char *const known_keys[] = { "about", "layer",      "check",     "tier",     "order",   "needs", "flags",
+                                          "scene", "parameters", "tolerance", "p_values", "seconds", "seed" };
 
 static bool only_known_keys(const struct gate_case *c, char why[WHY_LENGTH])
 {
@@ -109,6 +109,7 @@ static bool parse_case(struct gate_case *c, char why[WHY_LENGTH])
     c->seed = (unsigned)json_integer_value(seed);
     c->p_values = (int)scene_number(c->json, "p_values", 0);
     c->seconds = scene_number(c->json, "seconds", 60);
+    c->order = (int)scene_number(c->json, "order", 50);
     return true;
 }
 
@@ -135,10 +136,12 @@ static int load_one(const char *path, const struct stat *status, int kind, struc
     return parse_case(c, loading_why) ? 0 : 1;
 }
 
-static int by_layer_then_name(const void *a, const void *b)
+static int by_layer_order_name(const void *a, const void *b)
 {
     const struct gate_case *p = a, *q = b;
-    return p->layer != q->layer ? (int)p->layer - (int)q->layer : strcmp(p->name, q->name);
+    if (p->layer != q->layer)
+        return (int)p->layer - (int)q->layer;
+    return p->order != q->order ? (p->order > q->order) - (p->order < q->order) : strcmp(p->name, q->name);
 }
 
 static uint64_t hash_suite(const struct suite_of_cases *suite)
@@ -162,7 +165,7 @@ bool cases_load(const char *folder, struct suite_of_cases *suite, char why[WHY_L
         return why[0] ? false : why_not(why, "cannot read the folder of cases %s", folder);
     if (suite->count == 0)
         return why_not(why, "no case.json below %s", folder);
-    qsort(suite->item, suite->count, sizeof *suite->item, by_layer_then_name);
+    qsort(suite->item, suite->count, sizeof *suite->item, by_layer_order_name);
     for (size_t k = 0; k < suite->count; k++) {
         suite->p_values += suite->item[k].p_values;
         for (size_t other = 0; other < k; other++)

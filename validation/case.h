@@ -18,6 +18,7 @@ struct gate_case {
     const char *check;          /* name of the check function */
     enum layer layer;
     enum tier tier;
+    int order;                  /* within its layer: cases that name a term come before those that only see it */
     json_t *needs, *flags;      /* arrays of words */
     json_t *scene;              /* scene template; copy before changing: json_deep_copy */
     json_t *parameters;         /* anything the check wants */
@@ -36,7 +37,7 @@ bool tier_parse(const char *text, enum tier *tier);
 const char *tier_name(enum tier tier);
 bool case_lists(const json_t *words, const char *word);
 
-/* Reads every case.json below `folder`, sorted by layer, then name; any error in any case is an error of the suite. */
+/* Reads every case.json below `folder`, sorted by layer, order, name; any error in any case is an error of the suite. */
 bool cases_load(const char *folder, struct suite_of_cases *suite, char why[WHY_LENGTH]);
 void cases_free(struct suite_of_cases *suite);
 

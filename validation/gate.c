@@ -208,7 +208,10 @@ static int run_cases(const struct options *o, const struct suite_of_cases *suite
     struct provenance p = { .suite_version = GATE_VERSION, .candidate = o->candidate, .level = "A", .precision = "double",
                             .seed_offset = o->seed_offset };
     snprintf(p.suite_hash, sizeof p.suite_hash, "%016llx", (unsigned long long)suite->hash);
-    candidate_hash(&plan.candidate, p.candidate_hash);
+    if (!candidate_hash(&plan.candidate, p.candidate_hash)) {
+        free(work);
+        return usage("there is no program '%.*s' to run as the candidate", (int)strcspn(o->candidate, " \t"), o->candidate);
+    }
     say_not_tested(o, suite, count, p.not_tested, sizeof p.not_tested);
     const time_t date = time(NULL);
     strftime(p.date, sizeof p.date, "%Y-%m-%dT%H:%M:%SZ", gmtime(&date));

@@ -115,7 +115,7 @@ void pair_drag(struct check_run *run)
         forces_free(&answer.forces);
         book_free(&book);
         json_decref(scene);
-        if (!answered)
-            return;
+        if (!answered && results_verdict(&run->results) > VERDICT_SKIP)
+            return; /* it will not do better in the other variants; but one that it does not support says nothing of them */
     }
 }

@@ -209,7 +209,7 @@ void pair_frames(struct check_run *run)
         book_free(&v.book);
         free(v.view);
         json_decref(scene);
-        if (!answered)
-            return;
+        if (!answered && results_verdict(&run->results) > VERDICT_SKIP)
+            return; /* it will not do better in the other variants; but one that it does not support says nothing of them */
     }
 }

@@ -33,6 +33,7 @@ struct survey {
     size_t gaps, sizes;
     double measured[ENTRIES][SIZES][GAPS], expected[ENTRIES][SIZES][GAPS];
     struct worst rest, linear, third_law, symmetry, positive, rank, other;
+    struct entry asymmetric;                        /* where the symmetry is worst */
 };
 
 static void fill_book(struct check_run *run, const struct model *m, struct survey *s, struct pair_book *book)
@@ -129,7 +130,10 @@ static void see_invariants(struct survey *s, const double R[COLUMNS][COLUMNS], s
         largest = fmax(largest, fabs(R[i][i]));
     for (int i = 0; i < COLUMNS; i++)
         for (int j = 0; j < COLUMNS; j++) {
+            const double before = s->symmetry.error;
             worst_see(&s->symmetry, R[i][j], R[j][i], largest, at);
+            if (s->symmetry.error != before)
+                s->asymmetric = (struct entry){ THEORY_SCALARS, i / 3, j / 3 };
             if (i < 3)
                 worst_see(&s->third_law, R[3 + i][j], -R[i][j], largest, at);
         }
@@ -198,7 +202,8 @@ static void pattern(const struct survey *s, int k, double tolerance, char *text,
     double low = INFINITY, high = -INFINITY, over_gaps = 0, over_sizes = 0, equal_sizes = 0;
     for (size_t b = 0; b < s->sizes; b++)
         for (size_t g = 0; g < s->gaps; g++) {
-            const double q = s->measured[k][b][g] / s->expected[k][b][g];
+            double q = s->measured[k][b][g] / s->expected[k][b][g];
+            q = fabs(q) < 1e-9 ? 0 : q; /* no "-0" or rounding in the words */
             low = fmin(low, q);
             high = fmax(high, q);
             over_gaps = fmax(over_gaps, fabs(q - s->measured[k][b][0] / s->expected[k][b][0]));
@@ -207,11 +212,12 @@ static void pattern(const struct survey *s, int k, double tolerance, char *text,
                 equal_sizes = fmax(equal_sizes, fabs(q - 1));
         }
     const double same = 1e-6 * (fabs(low) + fabs(high));
-    if (high - low <= same && fabs(low + 1) < 1e-6)
+    if (fmax(fabs(low), fabs(high)) < 1e-9)
+        snprintf(text, room, "nothing of expected at every gap and size ratio: the term is missing");
+    else if (high - low <= same && fabs(low + 1) < 1e-6)
         snprintf(text, room, "the opposite sign at every gap and size ratio");
     else if (high - low <= same)
-        snprintf(text, room, "%.6g of expected at every gap and size ratio%s", low,
-                 low == 0 ? ": the term is missing" : ": a factor, or a resistance function or its index");
+        snprintf(text, room, "%.6g of expected at every gap and size ratio: a factor, or a resistance function or its index", low);
     else if (over_gaps <= same)
         snprintf(text, room, "%.4g to %.4g of expected, by size ratio, the same at every gap%s", low, high,
                  equal_sizes < tolerance ? ": right for equal radii, so an index or a power of the size ratio"
@@ -224,11 +230,12 @@ static void pattern(const struct survey *s, int k, double tolerance, char *text,
                  equal_sizes < tolerance ? "; right for equal radii: how the gap is scaled, or a size ratio" : "");
 }
 
+/* Names the wrong entries with their patterns; entries that are wrong in the same way share one. */
 static void judge_coefficient(struct check_run *run, const struct survey *s, int coefficient)
 {
     const double tolerance = run->gate_case->tolerance;
     struct worst all = WORST_NONE;
-    char sentence[WHY_LENGTH] = "", words[256];
+    char sentence[WHY_LENGTH] = "", words[256], last[256] = "";
     for (int k = 0; k < ENTRIES; k++) {
         struct worst w = WORST_NONE;
         if (entries[k].coefficient != coefficient)
@@ -236,13 +243,18 @@ static void judge_coefficient(struct check_run *run, const struct survey *s, int
         for (size_t b = 0; b < s->sizes; b++)
             for (size_t g = 0; g < s->gaps; g++)
                 worst_see(&w, s->measured[k][b][g], s->expected[k][b][g], fabs(s->expected[k][b][g]), 0);
-        if (!(w.error <= tolerance)) {
-            const size_t used = strlen(sentence);
-            pattern(s, k, tolerance, words, sizeof words);
-            snprintf(sentence + used, sizeof sentence - used, "%s%s: %s", used ? "; " : "", entry_name(&entries[k]), words);
-        }
         if (!(w.error <= all.error))
             all = w;
+        if (w.error <= tolerance)
+            continue;
+        pattern(s, k, tolerance, words, sizeof words);
+        const bool same = strcmp(words, last) == 0;
+        size_t used = strlen(sentence);
+        if (same) /* before the words that both share */
+            used -= strlen(last) + 2;
+        snprintf(sentence + used, sizeof sentence - used, "%s%s: %s", same ? " and " : used ? "; " : "", entry_name(&entries[k]),
+                 words);
+        snprintf(last, sizeof last, "%s", words);
     }
     check_error(run, MODEL, theory_scalar_name[coefficient], all.measured, all.expected, all.error, tolerance, "%s, %s",
                 theory_scalar_name[coefficient], sentence);
@@ -260,7 +272,10 @@ static void judge_all(struct check_run *run, const struct survey *s, const struc
     judge(run, book, "zero at rest", &s->rest, "lubrication acts on a pair at rest");
     judge(run, book, "linear in velocity", &s->linear, "the force is not linear in the velocities");
     judge(run, book, "third law of R", &s->third_law, "an entry of R for the force on 2 is not minus that for 1");
-    judge(run, book, "R symmetric", &s->symmetry, "an entry of R differs from its mirror entry");
+    char fault[256], mirror[96];
+    snprintf(mirror, sizeof mirror, "%s", entry_name(&(struct entry){ THEORY_SCALARS, s->asymmetric.column, s->asymmetric.row }));
+    snprintf(fault, sizeof fault, "R is not symmetric, in the %s against the %s", entry_name(&s->asymmetric), mirror);
+    judge(run, book, "R symmetric", &s->symmetry, fault);
     judge(run, book, "R positive semidefinite", &s->positive,
           "R has a negative eigenvalue, in units of its largest: some motion gains energy");
     judge(run, book, "rank of R", &s->rank, "the number of modes that R resists is wrong");
