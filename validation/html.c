@@ -63,7 +63,10 @@ static void heading(FILE *f, const struct provenance *p, const struct finished_c
         fprintf(f, "%d of %d cases %s", t.failed, t.failed + t.passed, t.failed > t.inconclusive ? "failed" : "are inconclusive");
     fputs("</h1><p class=command><code>", f);
     markup_text(f, p->candidate);
-    fprintf(f, "</code> \302\267 %.1f s</p></header>\n<div class=tiles>", p->seconds);
+    fprintf(f, "</code> \302\267 suite 1.0 (%s) \302\267 %s \302\267 %.1f s</p><p class=command>Not tested: ", p->suite_hash, p->date,
+            p->seconds);
+    markup_text(f, p->not_tested);
+    fputs("</p></header>\n<div class=tiles>", f);
     const struct { const char *kind, *word; int n; } tiles[] = { { "pass", "passed", t.passed },
                                                                  { "fail", "failed", t.failed - t.inconclusive },
                                                                  { "unsure", "inconclusive", t.inconclusive },
@@ -76,32 +79,41 @@ static void heading(FILE *f, const struct provenance *p, const struct finished_c
     fprintf(f, "<div class=\"tile none\"><b>%zu</b>quantities judged</div></div>\n", results);
 }
 
-/* Failing terms, worst layers first as layers build on each other: a wrong pair force explains all that follows. */
-static void wrong_terms(FILE *f, const struct finished_case *done, size_t count)
+/* The sentences of one case that say what is wrong, invariants first. */
+static void wrong_in_case(FILE *f, const struct finished_case *done)
 {
-    bool any = false;
-    for (int pass = 0; pass < 3; pass++)
-        for (size_t k = 0; k < count; k++)
-            for (size_t i = 0; i < done[k].results.count; i++) {
-                const struct result *r = &done[k].results.item[i];
-                const int rank = r->verdict == VERDICT_INCONCLUSIVE ? 2 : r->judgement == MODEL ? 1 : 0;
-                if (r->verdict < VERDICT_INCONCLUSIVE || rank != pass)
-                    continue;
-                if (!any)
-                    fputs("<section><h2>What is wrong</h2><p class=lead>Broken invariants first: they need no formula of "
-                          "ours. Then disagreement with the declared model.</p><ol class=wrong>", f);
-                any = true;
-                fputs("<li>", f);
-                badge(f, r->verdict);
-                fprintf(f, " <span class=where>%s / <a href=\"#%s\">%s</a> / ", layer_name(done[k].gate_case->layer),
-                        done[k].gate_case->name, done[k].gate_case->name);
-                markup_text(f, r->what);
-                fputs("</span><p>", f);
-                markup_text(f, r->sentence);
-                fputs("</p></li>\n", f);
-            }
-    if (any)
-        fputs("</ol></section>\n", f);
+    enum { SENTENCES_AT_MOST = 8 };
+    int told = 0, all = 0;
+    fprintf(f, "<div class=\"wrong %s\"><p class=where>", done->verdict == VERDICT_FAIL ? "fail" : "unsure");
+    badge(f, done->verdict);
+    fprintf(f, " %s / <a href=\"#%s\">%s</a></p><ul>\n", layer_name(done->gate_case->layer), done->gate_case->name,
+            done->gate_case->name);
+    for (int rank = 0; rank < 3; rank++)
+        for (size_t i = 0; i < done->results.count; i++) {
+            const struct result *r = &done->results.item[i];
+            const int mine = r->verdict == VERDICT_INCONCLUSIVE ? 2 : r->judgement == MODEL ? 1 : 0;
+            if (r->verdict < VERDICT_INCONCLUSIVE || mine != rank || ++all > SENTENCES_AT_MOST)
+                continue;
+            fputs("<li>", f);
+            markup_text(f, r->sentence);
+            fputs("</li>\n", f);
+            told++;
+        }
+    if (all > told)
+        fprintf(f, "<li>and %d more, below</li>", all - told);
+    fputs("</ul></div>\n", f);
+}
+
+static void wrong_terms(FILE *f, const struct finished_case *done, size_t count, struct tally t)
+{
+    if (t.failed == 0)
+        return;
+    fputs("<section><h2>What is wrong</h2><p class=lead>The first case names the most: later ones build on it. In each, broken "
+          "invariants stand first (they need no formula of ours), then disagreement with the declared model.</p>\n", f);
+    for (size_t k = 0; k < count; k++)
+        if (done[k].verdict >= VERDICT_INCONCLUSIVE)
+            wrong_in_case(f, &done[k]);
+    fputs("</section>\n", f);
 }
 
 static void picture(FILE *f, const struct finished_case *done, const struct result *r)
@@ -116,9 +128,7 @@ static void picture(FILE *f, const struct finished_case *done, const struct resu
         if (strncmp(line, "<?xml", 5) != 0 && strncmp(line, "<!DOCTYPE", 9) != 0)
             fputs(line, f);
     fclose(svg);
-    fputs("<figcaption>", f);
-    markup_text(f, r->what);
-    fputs("</figcaption></figure>\n", f);
+    fputs("</figure>\n", f);
 }
 
 static void result_row(FILE *f, const struct result *r)
@@ -176,7 +186,7 @@ static void one_case(FILE *f, const struct finished_case *done)
     if (worst && done->verdict != VERDICT_SKIP) {
         char error[32];
         terminal_error(error, sizeof error, worst);
-        fprintf(f, "%zu judged, worst %s%s", done->results.count, isnan(worst->p) ? "error " : "", error);
+        fprintf(f, "%zu judged<br>worst %s%s", done->results.count, isnan(worst->p) ? "error " : "", error);
     }
     fputs("</span>", f);
     badge(f, done->verdict);
@@ -204,18 +214,20 @@ static void one_case(FILE *f, const struct finished_case *done)
 static void layers(FILE *f, const struct finished_case *done, size_t count)
 {
     for (int layer = LAYER_PAIR; layer <= LAYER_PUBLISHED; layer++) {
-        bool any = false;
-        for (size_t k = 0; k < count; k++) {
-            if ((int)done[k].gate_case->layer != layer)
-                continue;
-            if (!any)
-                fprintf(f, "<section><h2><span class=number>%d</span> %s</h2><p class=lead>%s</p>\n", layer,
-                        layer_name((enum layer)layer), layer_asks[layer - 1]);
-            any = true;
-            one_case(f, &done[k]);
-        }
-        if (any)
-            fputs("</section>\n", f);
+        int asked = 0, passed = 0;
+        for (size_t k = 0; k < count; k++)
+            if ((int)done[k].gate_case->layer == layer) {
+                asked++;
+                passed += done[k].verdict == VERDICT_PASS;
+            }
+        if (asked == 0)
+            continue;
+        fprintf(f, "<section><h2><span class=number>%d</span> %s <span class=count>%d of %d passed</span></h2>"
+                   "<p class=lead>%s</p>\n", layer, layer_name((enum layer)layer), passed, asked, layer_asks[layer - 1]);
+        for (size_t k = 0; k < count; k++)
+            if ((int)done[k].gate_case->layer == layer)
+                one_case(f, &done[k]);
+        fputs("</section>\n", f);
     }
 }
 
@@ -287,7 +299,7 @@ bool report_html(const char *path, const struct provenance *p, const struct fini
     fprintf(f, "<!DOCTYPE html>\n<html lang=en><head><meta charset=utf-8><meta name=viewport content=\"width=device-width\">"
                "<title>sheargate verdict</title><style>\n%s</style></head><body><main>\n", html_style);
     heading(f, p, done, count, report_tally(done, count));
-    wrong_terms(f, done, count);
+    wrong_terms(f, done, count, report_tally(done, count));
     layers(f, done, count);
     provenance(f, p);
     flags(f, done, count, explained);

@@ -6,6 +6,8 @@
 
 enum { WIDTH = 560, HEIGHT = 340, LEFT = 58, RIGHT = 70, TOP = 30, BOTTOM = 40 };
 
+static const char *const colours[] = { "#1f5fa8", "#b3541e", "#2b7a4b", "#7d3c98", "#8a6d00", "#b3261e", "#3d4a5c" };
+
 struct axis { double low, high; int from, to; };    /* in decades; place on the paper */
 
 static double place(const struct axis *a, double value)
@@ -27,10 +29,26 @@ static void ticks(FILE *f, const struct axis *a, bool horizontal)
     }
 }
 
+/* The names at the right ends of the lines, from the lowest up, pushed apart where they would overlap. */
+static void write_names(FILE *f, const struct axis *up, size_t points, const struct curve *curve, int curves)
+{
+    double floor_at = HEIGHT;
+    for (unsigned done = 0; done != (1u << curves) - 1;) {
+        int lowest = -1;
+        for (int c = 0; c < curves; c++)
+            if (!(done >> c & 1u)
+                && (lowest < 0 || fabs(curve[c].line[points - 1]) < fabs(curve[lowest].line[points - 1])))
+                lowest = c;
+        floor_at = fmin(place(up, curve[lowest].line[points - 1]) + 4, floor_at - 14);
+        fprintf(f, "<text x='%d' y='%.1f' fill='%s'>%s</text>\n", WIDTH - RIGHT + 8, floor_at, colours[lowest % 7],
+                curve[lowest].name);
+        done |= 1u << lowest;
+    }
+}
+
 bool picture_curves(const char *path, const char *title, const char *x_name, const double *x, size_t points,
                     const struct curve *curve, int curves)
 {
-    static const char *const colours[] = { "#1f5fa8", "#b3541e", "#2b7a4b", "#7d3c98", "#8a6d00", "#b3261e", "#3d4a5c" };
     struct axis across = { INFINITY, -INFINITY, LEFT, WIDTH - RIGHT }, up = { INFINITY, -INFINITY, HEIGHT - BOTTOM, TOP };
     for (size_t k = 0; k < points; k++) {
         across.low = fmin(across.low, log10(x[k]));
@@ -46,7 +64,7 @@ bool picture_curves(const char *path, const char *title, const char *x_name, con
     if (!f || points < 2)
         return false;
     fprintf(f, "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 %d %d' width='%d' height='%d' font-family='sans-serif' "
-               "font-size='12' fill='#3d4a5c'>\n<text x='%d' y='18' font-size='13'>%s: lines model, points candidate</text>\n",
+               "font-size='12' fill='#3d4a5c'>\n<text x='%d' y='18' font-size='13'>%s (lines: model, points: candidate)</text>\n",
             WIDTH, HEIGHT, WIDTH, HEIGHT, LEFT, title);
     ticks(f, &across, true);
     ticks(f, &up, false);
@@ -60,9 +78,8 @@ bool picture_curves(const char *path, const char *title, const char *x_name, con
         for (size_t k = 0; k < points; k++)
             fprintf(f, "<circle cx='%.1f' cy='%.1f' r='3.2' fill='#fff' stroke-width='1.5' stroke='%s'/>\n", place(&across, x[k]),
                     place(&up, curve[c].point[k]), colour);
-        fprintf(f, "<text x='%d' y='%.1f' fill='%s'>%s</text>\n", WIDTH - RIGHT + 8,
-                place(&up, curve[c].line[points - 1]) + 4, colour, curve[c].name);
     }
+    write_names(f, &up, points, curve, curves);
     fprintf(f, "</svg>\n");
     return fclose(f) == 0;
 }

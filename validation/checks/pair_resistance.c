@@ -284,17 +284,35 @@ static void judge_all(struct check_run *run, const struct survey *s, const struc
         judge_coefficient(run, s, c);
 }
 
-/* Picture: the seven coefficients over the gap for the first unequal pair, candidate's points on the model's lines. */
+static double entry_error(const struct survey *s, int k, size_t size)
+{
+    double error = 0;
+    for (size_t g = 0; g < s->gaps; g++)
+        error = fmax(error, fabs(s->measured[k][size][g] / s->expected[k][size][g] - 1));
+    return error;
+}
+
+/* Picture: the seven coefficients over the gap for one unequal pair, each where it is worst, on the model's lines. */
 static void draw(struct check_run *run, const struct survey *s)
 {
-    const size_t size = s->sizes > 1;
+    size_t size = 0;
+    for (size_t b = 0; b < s->sizes; b++)
+        if (fabs(s->ratio[b] - 1.4) < fabs(s->ratio[size] - 1.4))
+            size = b;
     struct curve curve[THEORY_SCALARS];
-    for (int k = ENTRIES - 1; k >= 0; k--)
-        curve[entries[k].coefficient] = (struct curve){ theory_scalar_name[entries[k].coefficient], s->measured[k][size],
-                                                        s->expected[k][size] };
+    double shown[THEORY_SCALARS];
+    for (int c = 0; c < THEORY_SCALARS; c++)
+        shown[c] = -1;
+    for (int k = 0; k < ENTRIES; k++) {
+        const int c = entries[k].coefficient;
+        if (entry_error(s, k, size) > shown[c] + 1e-6) { /* the first of equals */
+            shown[c] = entry_error(s, k, size);
+            curve[c] = (struct curve){ theory_scalar_name[c], s->measured[k][size], s->expected[k][size] };
+        }
+    }
     char path[PATH_LENGTH], title[96];
     path_join(path, run->work, "coefficients.svg");
-    snprintf(title, sizeof title, "size of the coefficients over the gap, a2/a1 = %.3g", s->ratio[size]);
+    snprintf(title, sizeof title, "coefficients, a2/a1 = %.3g", s->ratio[size]);
     if (picture_curves(path, title, "gap xi", s->xi, s->gaps, curve, THEORY_SCALARS))
         result_picture(&run->results.item[run->results.count - 1], "coefficients.svg");
 }
