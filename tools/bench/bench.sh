@@ -5,8 +5,8 @@
 # friction and lubrication) at rate 0.1, velocities then scaled to the rate 9e-3 of Table 4.1. Made once, kept in build/bench/.
 #
 # Time: user seconds of a long run minus those of a short one, so that start-up drops out; solver and LAMMPS in turn, `repeats` times,
-# median of each. Instructions: callgrind, again long minus short. Lists are rebuilt every few thousand steps here, so that
-# rebuilding is absent from both. LAMMPS's skin is 0.1, the fastest for such runs (0.3 costs it 10 to 40 % more).
+# median of each. Instructions: callgrind, 120 steps minus 20, in which few lists, if any, are rebuilt (LAMMPS's last about a thousand
+# steps at this slow flow). LAMMPS's skin is 0.1: of 0.05, 0.1 and 0.3 the fastest or as fast within the noise for every deck.
 #
 # What is compared: s1 with fix langevin is the same physics. lubricate/poly and brownian/poly are other physics for unequal radii
 # (coefficients and third law), so those rows compare the cost of codes for the same kind of model, not of the same numbers.
@@ -115,10 +115,11 @@ prepare mixed
 prepare equal
 : >"$work/headline"
 {
-    printf 'sheargate %s; LAMMPS: %s; %s\n' "$("$shear" --version | head -1)" "$("$lmp" -h | awk '/Large-scale/ { sub(/.*Simulator - /, ""); print }')" \
+    printf '%s; LAMMPS %s; %s\n' "$("$shear" --version | head -1)" \
+           "$("$lmp" -h | awk '/Large-scale/ { sub(/.*Simulator - /, ""); print }')" \
            "$(awk -F': ' '/model name/ { print $2; exit }' /proc/cpuinfo)"
-    printf '1000 spheres, phi 0.5, constants of Table 4.1, dt 1e-4; median of %d interleaved repeats, user time, one core\n\n' "$repeats"
-    printf '%-24s %11s %9s %13s %11s %8s   %-13s %s\n' scene 'Mstep/s' 'us' 'instructions' 'LAMMPS us' ratio 'LAMMPS deck' remark
+    printf '1000 spheres, phi 0.5, constants of Table 4.1, dt 1e-4; per particle and step; median of %d interleaved repeats, user time, one core\n\n' "$repeats"
+    printf '%-24s %11s %9s %13s %11s %8s   %-13s %s\n' scene 'M steps/s' 'us' 'instructions' 'LAMMPS us' ratio 'LAMMPS deck' remark
     row 'S1 contact+drag'          mixed s1 30000 s1-langevin 6000 'same physics: gran/hooke, fix langevin on temp/deform'
     row 'S1 contact+drag'          mixed s1 30000 s1-viscous 15000 'different physics: gran/hooke, fix viscous (drag towards rest)'
     row 'S2 friction+lub+drag'     mixed s2 4000 s2-poly      600 'different physics: gran/hooke/history + lubricate/poly'
