@@ -104,7 +104,7 @@ static double relaxation_time(const struct task *t, int species)
 }
 
 /* Everything from the data file to the computes; `contact` and `drag` switch the two forces. */
-static void write_physics(FILE *f, const struct task *t, int state, const char *out, bool contact, bool drag)
+static void write_physics(FILE *f, const struct task *t, int state, bool contact, bool drag)
 {
     double smallest = t->radius[0], largest = smallest;
     for (int k = 1; k < t->species_count; k++) {
@@ -112,7 +112,7 @@ static void write_physics(FILE *f, const struct task *t, int state, const char *
         largest = fmax(largest, t->radius[k]);
     }
     fprintf(f, "clear\nunits lj\natom_style sphere\nboundary p p p\nnewton off\ncomm_modify vel yes\nbox tilt large\n"
-               "read_data %s/lammps-%d.data\n", out, state);
+               "read_data lammps-%d.data\n", state);
     if (contact && t->friction > 0)
         fprintf(f, "pair_style gran/hooke/history %.17g %.17g 0 0 %.17g 0\npair_coeff * *\n", t->normal_stiffness,
                 t->tangential_stiffness, t->friction);
@@ -136,28 +136,28 @@ static void write_physics(FILE *f, const struct task *t, int state, const char *
     }
 }
 
-static void write_frozen(FILE *f, const struct task *t, const char *out)
+static void write_frozen(FILE *f, const struct task *t)
 {
     for (int state = 0; state < t->states; state++)
         for (int force = 0; force < 2; force++) {   /* contact, then drag: one frame of forces in the dump for each */
-            write_physics(f, t, state, out, force == 0 && t->contact, force == 1 && t->drag);
-            fprintf(f, "timestep 1\ndump s all custom 1 %s/lammps.dump id ix iy iz x y z fx fy fz tqx tqy tqz\n"
-                       "dump_modify s append yes sort id format float %%.17g\nrun 0 start 0 stop 1000\n", out);
+            write_physics(f, t, state, force == 0 && t->contact, force == 1 && t->drag);
+            fprintf(f, "timestep 1\ndump s all custom 1 lammps.dump id ix iy iz x y z fx fy fz tqx tqy tqz\n"
+                       "dump_modify s append yes sort id format float %%.17g\nrun 0 start 0 stop 1000\n");
         }
 }
 
-static void write_run(FILE *f, const struct task *t, const char *out)
+static void write_run(FILE *f, const struct task *t)
 {
     const long first = first_step(t);
-    write_physics(f, t, 0, out, t->contact, t->drag);
+    write_physics(f, t, 0, t->contact, t->drag);
     fprintf(f, "reset_timestep %ld\ntimestep %.17g\ngroup moving empty\nfix move moving nve/sphere\nthermo %ld\n", first - 1, t->dt,
             t->stress_every);
     if (t->states_every > 0)
-        fprintf(f, "dump s all custom %ld %s/lammps.dump id ix iy iz x y z vx vy vz omegax omegay omegaz\n"
-                   "dump_modify s sort id format float %%.17g\n", t->states_every, out);
+        fprintf(f, "dump s all custom %ld lammps.dump id ix iy iz x y z vx vy vz omegax omegay omegaz\n"
+                   "dump_modify s sort id format float %%.17g\n", t->states_every);
     if (t->stress_every > 0 && t->contact && t->friction > 0)
         fprintf(f, "compute pairs all pair/local dist force fx fy fz p1 p2 p3\n"
-                   "dump p all local %ld %s/lammps.pairs c_pairs[*]\ndump_modify p format float %%.17g\n", t->stress_every, out);
+                   "dump p all local %ld lammps.pairs c_pairs[*]\ndump_modify p format float %%.17g\n", t->stress_every);
     /* One step in which only the cell moves, then all steps of the run; `pre no` keeps the forces and the lists. */
     fprintf(f, "run 1 start %ld stop %ld\ngroup moving union all\nrun %ld start %ld stop %ld pre no\n", first - 1,
             first + t->steps, t->steps, first - 1, first + t->steps);
@@ -166,19 +166,20 @@ static void write_run(FILE *f, const struct task *t, const char *out)
 static void run_lammps(const char *out)
 {
     const char *program = getenv("LMP") ? getenv("LMP") : "lmp";
-    char deck[PATH_ROOM], log[PATH_ROOM], line[PATH_ROOM], error[PATH_ROOM] = "";
-    snprintf(deck, sizeof deck, "%s/in.lammps", out);
+    char log[PATH_ROOM], line[PATH_ROOM], error[PATH_ROOM] = "";
     snprintf(log, sizeof log, "%s/lammps.log", out);
     const pid_t child = fork();
     if (child == 0) {
-        execlp(program, program, "-in", deck, "-log", log, "-screen", "none", "-nocite", (char *)NULL);
+        if (chdir(out) == 0)    /* so the deck names its files without a folder and can be run again by hand */
+            execlp(program, program, "-in", "in.lammps", "-log", "lammps.log", "-screen", "none", "-nocite", (char *)NULL);
         _exit(127);
     }
     int status;
     if (child < 0 || waitpid(child, &status, 0) < 0)
         fail("cannot start a process");
     if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
-        fail("the LAMMPS program \"%s\" was not found (Debian package lammps; or name it in the environment variable LMP)", program);
+        fail("the LAMMPS program \"%s\" was not found (Debian package lammps; or give its full path in the environment variable LMP)",
+             program);
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0)
         return;
     FILE *f = fopen(log, "r");
@@ -197,8 +198,9 @@ int main(int argc, char **argv)
     const struct task t = read_task(argv[1]);
     for (int state = 0; state < t.states; state++)
         write_data(&t, state, argv[2]);
+    close_file(open_file(argv[2], "lammps.dump", "w"), "lammps.dump");  /* frozen states append to it */
     FILE *deck = open_file(argv[2], "in.lammps", "w");
-    (t.frozen ? write_frozen : write_run)(deck, &t, argv[2]);
+    (t.frozen ? write_frozen : write_run)(deck, &t);
     close_file(deck, "in.lammps");
     run_lammps(argv[2]);
     (t.frozen ? write_answer_frozen : write_answer_run)(&t, argv[2]);

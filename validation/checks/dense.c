@@ -176,7 +176,8 @@ static void draw(struct check_run *run, struct result *r, const struct average *
                "set arrow from %g, graph 0 to %g, graph 1 nohead dashtype 2 lc 'gray'\n"
                "plot $bins using 1:2:3 with yerrorlines pt 7 ps 0.6 lc 'black' title 'candidate', \\\n"
                "     $bins using ($1+%g):4:5 with yerrorlines pt 6 ps 0.9 lc 'red' title 'LAMMPS (shifted sideways)'\n"
-               "unset arrow\nunset xlabel\nset ylabel 'steady average / (fluid viscosity x rate)'\nset yrange [*:*]\nset xrange [-0.5:%d.5]\n"
+               "unset arrow\nunset xlabel\nset ylabel 'steady average / (fluid viscosity x rate)'\n"
+               "set yrange [*:*]\nset xrange [-0.5:%d.5]\n"
                "set xtics rotate by -25\nset key top right\nset xzeroaxis\n"
                "plot $steady using 1:3:4:xtic(2) with yerrorbars pt 7 ps 0.6 lc 'black' title 'candidate', \\\n"
                "     $steady using ($1+0.15):5:6 with yerrorbars pt 6 ps 0.9 lc 'red' title 'LAMMPS'\n",

@@ -111,8 +111,8 @@ static void judge_states(struct check_run *run, const struct dense_start *s, cha
     const int compared = scene_number(s->scene, "forces.contact.friction", 0) > 0 ? 3 : 2;
     for (int k = 0; k < compared; k++) {
         struct result *r = check_error(run, MODEL, what[k], worst[k], 0, worst[k], tolerance,
-                                       "%s differ from LAMMPS's by %.2g after %.0f steps (positions in radii: %s); a cell that lags one step "
-                                       "or a drag at another moment's velocity would do that", what[k], worst[k], steps, growth);
+                                       "%s differ from LAMMPS's by %.2g after %.0f steps (positions in radii: %s); a cell that lags "
+                                       "one step or a drag at another moment's velocity would do that", what[k], worst[k], steps, growth);
         result_notes(r, "largest difference of positions, in radii of the first species: %s", growth);
     }
 }
