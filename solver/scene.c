@@ -185,8 +185,8 @@ static bool build(struct settings *root, const char *path, const struct scene_op
     snprintf(sim->about, sizeof sim->about, "%s", settings_text(root, "about", e));
     s->dimensions = settings_has(root, "dimensions") ? (int)settings_whole(root, "dimensions", 2, 3, e) : 3;
     s->kinetic_origin = stress_origin(&s->stress, "kinetic");
-    settings_has(root, "run");                  /* known keys, also where only forces are asked for */
-    settings_has(root, "output");
+    /* Keys that are known also where only forces are asked for; the schema is for editors. */
+    settings_has(root, "run"), settings_has(root, "output"), settings_has(root, "$schema");
     return build_fluid(root, s, e) && build_key(root, s, e) && build_box(root, s, e) && build_species(root, &s->particles, e) &&
            build_forces(root, s, e) && build_dynamics(root, sim, &chosen, e) && suspension_start(root, path, options->states, s, e) &&
            choose_step(&chosen, s, e) && (options->frozen || (build_run(root, sim, e) && build_output(root, sim, e))) &&
