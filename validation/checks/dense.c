@@ -7,7 +7,7 @@
  * a difference grows about e-fold in a strain here, so two codes that take the same steps stay together particle by particle to the
  * end, and two that take other steps part on the way. Either way the spread of d_k says honestly what is known.
  *
- * "Agrees" is an equivalence test: the interval mean(d) +- 4 standard errors (99.8 % for 14 realisations, Student's t with 13 degrees
+ * "Agrees" is an equivalence test: the interval mean(d) +- 4 standard errors (99.7 % for 10 realisations, Student's t with 9 degrees
  * of freedom) must lie within 5 % of the reference. Two small quantities cannot be known so well in a minute and have wider margins in
  * the case: the kinetic part, and the normal stress differences, which are compared in units of the shear stress.
  */
