@@ -64,9 +64,9 @@ bool check_ask(struct check_run *run, const char *name, const struct question *q
         return true;
     struct result *r;
     if (answer.outcome == CANDIDATE_UNSUPPORTED)
-        r = check_skip(run, name, "%s", answer.message);
+        r = check_skip(run, name, "%s: %s", name, answer.message);
     else
-        r = check_error(run, INVARIANT, name, NAN, NAN, NAN, NAN, "%s", answer.message);
+        r = check_error(run, INVARIANT, name, NAN, NAN, NAN, NAN, "%s: %s", name, answer.message);
     if (answer.said[0])
         result_notes(r, "It said: %s", answer.said);
     return false;

@@ -77,10 +77,10 @@ static void collect(struct finished_case *done, int status)
     done->verdict = results_verdict(&done->results);
 }
 
-/* "running lubrication-cluster: draw 2000 of 20000 (12 s)", redrawn in place; only for people at a terminal. */
+/* "running lubrication-cluster: draw 2000 of 20000, 12 s", redrawn in place; only for people at a terminal. */
 static void show_progress(const struct worker *workers, int jobs, const struct finished_case *done)
 {
-    printf("\r\033[K");
+    char text[400] = "";
     for (int w = 0; w < jobs; w++) {
         const double elapsed = now() - workers[w].start;
         if (workers[w].pid == 0 || elapsed < 1)
@@ -93,8 +93,11 @@ static void show_progress(const struct worker *workers, int jobs, const struct f
                 line[0] = '\0';
             fclose(file);
         }
-        printf("  running %s%s%s, %.0f s", done[workers[w].at].gate_case->name, line[0] ? ": " : "", line, elapsed);
+        const size_t used = strlen(text);
+        snprintf(text + used, sizeof text - used, "  running %s%s%s, %.0f s", done[workers[w].at].gate_case->name,
+                 line[0] ? ": " : "", line, elapsed);
     }
+    printf("\r\033[K%.110s", text); /* cut, as a wrapped line could not be redrawn */
     fflush(stdout);
 }
 

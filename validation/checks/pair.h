@@ -30,12 +30,13 @@ struct model {
     struct theory_contact contact;
     bool has_lubrication, has_contact, has_drag, drag_torque;
     double viscosity, gradient[3][3], cell[3][3] /* rows: vectors at the evaluated time */, volume, time;
+    bool open[3];       /* directions of the cell that are not periodic */
     size_t species;
     double radius[64], density[64];
 };
 /* False (with a recorded failure) if the case's scene lacks something; that is a mistake in the suite. */
 bool model_read(struct check_run *run, const json_t *scene, struct model *m);
-/* The scene of the case with what a variant changes: "shear", "time", "lengths", "cell". Caller owns the result. */
+/* The scene of the case with what a variant changes: "shear", "time", "lengths", "cell", "periodic". Caller owns the result. */
 json_t *variant_scene(const struct gate_case *c, const json_t *variant);
 int model_species(const struct model *m, double radius);            /* number from 1 of the species with this radius */
 

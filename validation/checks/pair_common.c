@@ -42,6 +42,8 @@ static void read_box(const json_t *scene, struct model *m)
             m->cell[v][k] = cell     ? json_number_value(json_array_get(json_array_get(cell, v), k))
                             : v == k ? json_number_value(json_array_get(lengths, k))
                                      : 0;
+    for (size_t v = 0; v < 3; v++)
+        m->open[v] = json_is_false(json_array_get(scene_get(scene, "box.periodic"), v));
     size_t s;
     json_t *shear;
     json_array_foreach(scene_get(scene, "shear"), s, shear)
@@ -95,6 +97,8 @@ json_t *variant_scene(const struct gate_case *c, const json_t *variant)
         scene_set(scene, "start.time", json_incref(json_object_get(variant, "time")));
     if (lengths)
         scene_set(scene, "box.lengths", json_incref(lengths));
+    if (json_object_get(variant, "periodic"))
+        scene_set(scene, "box.periodic", json_incref(json_object_get(variant, "periodic")));
     if (cell) {
         scene_set(scene, "box.cell", json_incref(cell));
         json_object_del(scene_get(scene, "box"), "lengths");

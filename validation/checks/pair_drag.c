@@ -115,7 +115,7 @@ void pair_drag(struct check_run *run)
         forces_free(&answer.forces);
         book_free(&book);
         json_decref(scene);
-        if (!answered && results_verdict(&run->results) > VERDICT_SKIP)
-            return; /* it will not do better in the other variants; but one that it does not support says nothing of them */
+        if (!answered && results_verdict(&run->results) != VERDICT_PASS)
+            return; /* it will not do better in the others; but where some passed, one without support says nothing of them */
     }
 }

@@ -209,7 +209,7 @@ void pair_frames(struct check_run *run)
         book_free(&v.book);
         free(v.view);
         json_decref(scene);
-        if (!answered && results_verdict(&run->results) > VERDICT_SKIP)
-            return; /* it will not do better in the other variants; but one that it does not support says nothing of them */
+        if (!answered && results_verdict(&run->results) != VERDICT_PASS)
+            return; /* it will not do better in the others; but where some passed, one without support says nothing of them */
     }
 }
