@@ -45,6 +45,6 @@ const char html_style[] =
     "td{padding:3px 10px 3px 0;border-bottom:1px solid #eff1f3;vertical-align:top}.num{text-align:right;"
     "font-variant-numeric:tabular-nums;white-space:nowrap}th.num{text-align:right}\n"
     "tr.more td{color:var(--ink);padding:2px 10px 8px 18px;background:#fbfbfc}.notes{color:var(--soft);white-space:pre-line}\n"
-    "figure{margin:0 0 14px;display:inline-block;max-width:100%;vertical-align:top}figure svg{max-width:100%;height:auto}\n"
+    "figure{margin:0 0 14px}figure svg{max-width:100%;height:auto}figure svg:not([width]){width:964px}\n"
     "@media(max-width:760px){summary{grid-template-columns:1fr 92px}.asks,.nums{grid-column:1/3;text-align:left}}\n"
     "@media print{body{background:#fff}details{break-inside:avoid}}\n";
