@@ -17,6 +17,9 @@
  *   cell       step lets only the cell move (no sphere belongs to the group that is integrated), and the spheres follow:
  *              from then on forces see the cell of their own time. `run` is told when the whole began and ends (`start`,
  *              `stop`), which also removes the trap of `run 0`, where the flow rate would be zero.
+ *   remap      where the cell flips to the opposite tilt, fix deform wraps spheres that are outside at that moment without changing
+ *              their velocity (pre_exchange: domain->remap), which kicks them by rate x edge; LAMMPS pull request 4577 mends it. So the
+ *              cell never flips here: the tilt runs from minus to plus half of what it changes by (question.c), up to 16 strains.
  *   friction   that first step would advance the history of a pair that already touches: such a start is refused.
  *   stress     pressure is positive in compression: stress = -pressure; xy is r_x F_y. It has six components only, which
  *              is all for central forces; with friction the pair forces are read one by one (answer.c).
@@ -122,7 +125,7 @@ static void write_physics(FILE *f, const struct task *t, int state, bool contact
         fprintf(f, "pair_style zero %.17g\npair_coeff * *\n", 2 * largest);
     /* The skin costs neighbours, but LAMMPS also rebuilds its lists when a corner of the sheared cell has moved half of it. */
     fprintf(f, "neighbor %.17g bin\nneigh_modify every 1 delay 0 check yes\n"
-               "fix flow all deform 1 xy erate %.17g remap v\n"
+               "fix flow all deform 1 xy erate %.17g remap v flip no\n"
                "compute c all temp/deform\n"
                "compute pp all pressure NULL pair\ncompute pk all pressure c ke\n"
                "thermo_style custom step c_pp[1] c_pp[2] c_pp[3] c_pp[4] c_pp[5] c_pp[6] "
