@@ -85,6 +85,25 @@ static void langevin_covariance_is_consistent(void)
         }
 }
 
+/* Simple shear x along y by hand: y relaxes, x follows the velocity at the place where y has got to. */
+static void free_sphere_agrees_with_simple_shear_by_hand(void)
+{
+    const double rate = -1.7, tau = 0.48, spin_tau = 0.144, v = 3.1, G[3][3] = { { 0.0, rate, 0.0 }, { 0.0 }, { 0.0 } };
+    const struct theory_sphere start = { .radius = 1.3, .x = { 1.1, 2.3, -0.7 }, .u = { 0.4, v, -0.9 }, .w = { 0.3, -0.2, 0.0 } };
+    struct theory_sphere now;
+    for (double t = 0.01; t < 5.0; t *= 2.1) {
+        theory_free_sphere(G, tau, spin_tau, t, &start, &now);
+        const double s = t / tau, e = exp(-s), far = start.x[1] + v * tau, a = start.u[0] - rate * far;
+        check_close(now.x[1], far - v * tau * e, 1e-12, "y");
+        check_close(now.u[0], rate * far + (a - rate * v * t) * e, 1e-12, "velocity along the flow");
+        check_close(now.x[0], start.x[0] + rate * far * t + a * tau * (1.0 - e) - rate * v * tau * tau * (1.0 - e * (1.0 + s)), 1e-11,
+                    "x");    /* terms of size 30 */
+        check_close(now.x[2], -0.7 - 0.9 * tau * (1.0 - e), 1e-12, "z");
+        check_close(now.w[2], -0.5 * rate * (1.0 - exp(-t / spin_tau)), 1e-13, "spin from rest");
+        check_close(now.w[0], 0.3 * exp(-t / spin_tau), 1e-13, "spin across the vorticity dies out");
+    }
+}
+
 static double closed_average(double log_gap, void *p)
 {
     const double xi = exp(log_gap), r = 2.0 + xi;
@@ -177,6 +196,7 @@ static const struct unit_test tests[] = {
     { "drag: power and Einstein's slope", drag_power_and_einstein_slope },
     { "Langevin agrees with quadrature and with Li", langevin_agrees_with_quadrature_and_with_li },
     { "Langevin covariance is consistent", langevin_covariance_is_consistent },
+    { "a free sphere agrees with simple shear by hand", free_sphere_agrees_with_simple_shear_by_hand },
     { "phi^2 coefficient agrees with the closed average", phi2_coefficient_agrees_with_the_closed_average },
     { "a crowd does not care how its lattice is told", crowd_does_not_care_how_the_lattice_is_told },
     { NULL, NULL }

@@ -53,6 +53,13 @@ double theory_langevin_vacf(double kT, double mass, double friction, double t);
 double theory_langevin_msd_covariance(double kT, double mass, double friction, double s, double t);
 
 /*
+ * A sphere without noise in the flow U_inf = G x, at time t after `start`: relaxation times m/(6 pi eta a) of the velocity and
+ * I/(8 pi eta a^3) of the spin [T].
+ */
+void theory_free_sphere(const double G[3][3], double relaxation, double spin_relaxation, double t, const struct theory_sphere *start,
+                        struct theory_sphere *now);
+
+/*
  * Coefficient c of sigma_xy = c phi^2 eta rate from the lubrication of affinely moving, affinely spinning (W = Omega_inf) equal spheres
  * placed at random (g = 1 beyond contact), by quadrature over gap and direction. About 9.7 for gaps 1e-3 to 0.05.
  */

@@ -1,0 +1,89 @@
+/* Layer 3, shared parts: asking for trajectories and reading them (single.h). */
+#include "single.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+struct free_sphere free_sphere(const struct model *m)
+{
+    const double a = m->radius[0], pi = 3.14159265358979323846;
+    struct free_sphere s = { .radius = a, .mass = 4.0 / 3.0 * pi * m->density[0] * a * a * a };
+    s.inertia = 0.4 * s.mass * a * a;
+    s.friction = 6.0 * pi * m->viscosity * a;
+    s.spin_friction = 8.0 * pi * m->viscosity * a * a * a;
+    return s;
+}
+
+const struct track_point *track_at(const struct track *t, size_t step, size_t sphere)
+{
+    return &t->point[step * t->count + sphere];
+}
+
+void track_free(struct track *t)
+{
+    free(t->point);
+    *t = (struct track){ 0 };
+}
+
+/* Rows of other steps (the start, say) are ignored; each row asked for must be there once. */
+static bool track_read(const char *path, const int *at, struct track *t, char why[WHY_LENGTH])
+{
+    struct table table;
+    if (!table_read(path, "step,id,x,y,z,ux,uy,uz,wx?,wy?,wz?,turn_x?,turn_y?,turn_z?", &table, why))
+        return false;
+    const size_t rows = t->steps * t->count;
+    bool *found = calloc(rows, sizeof *found), good = found != NULL;
+    size_t missing = rows;
+    for (size_t r = 0; r < table.rows && good; r++) {
+        const double step = table_at(&table, r, 0), id = table_at(&table, r, 1);
+        size_t k = 0;
+        while (k < t->steps && step != at[k])
+            k++;
+        if (k == t->steps)
+            continue;
+        if (id < 1 || id > (double)t->count || id != floor(id)) {
+            good = why_not(why, "%s: step %g has a particle with id %g; ids are 1 to %zu", path, step, id, t->count);
+            break;
+        }
+        const size_t row = k * t->count + (size_t)id - 1;
+        if (found[row]) {
+            good = why_not(why, "%s: particle %g has two rows at step %g", path, id, step);
+            break;
+        }
+        found[row] = true;
+        missing--;
+        double *value = t->point[row].x;     /* x, u, w, turn lie one after the other */
+        for (size_t c = 0; c < 12; c++)
+            value[c] = table_at(&table, r, 2 + c);
+    }
+    for (size_t row = 0; row < rows && good && missing > 0; row++)
+        if (!found[row])
+            good = why_not(why, "%s: no row for particle %zu at step %d", path, row % t->count + 1, at[row / t->count]);
+    free(found);
+    table_free(&table);
+    return good;
+}
+
+bool track_ask(struct check_run *run, const char *name, json_t *scene, const struct state_row *start, size_t count, const int *at,
+               size_t steps, struct track *t)
+{
+    json_t *list = json_array();
+    for (size_t k = 0; k < steps; k++)
+        json_array_append_new(list, json_integer(at[k]));
+    scene_set(scene, "start.file", json_string("states.csv"));
+    scene_set(scene, "run", json_pack("{si}", "steps", at[steps - 1]));
+    scene_set(scene, "output", json_pack("{s{so sb}}", "states", "at", list, "turn", 1));
+    const struct question q = { .protocol = "run", .scene = scene, .state = start, .states = count };
+    char out[PATH_LENGTH], path[PATH_LENGTH], why[WHY_LENGTH];
+    if (!check_ask(run, name, &q, out))
+        return false;
+    *t = (struct track){ .steps = steps, .count = count, .point = calloc(steps * count, sizeof *t->point) };
+    path_join(path, out, "trajectory.csv");
+    if (t->point && track_read(path, at, t, why))
+        return true;
+    check_garbage(run, t->point ? why : "the gate is out of memory");
+    track_free(t);
+    return false;
+}
+
+const struct check single_checks[] = { { "single-langevin", check_langevin }, { "single-shear", check_shear }, { NULL, NULL } };

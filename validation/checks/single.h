@@ -1,0 +1,30 @@
+/*
+ * Layer 3, shared parts: many free spheres in one box, each a realisation of its own (nothing acts between them), run by the
+ * candidate, and where they are at given steps.
+ */
+#ifndef SINGLE_H
+#define SINGLE_H
+
+#include "pair.h"
+
+/* What trajectory.csv says of one sphere at one step. `turn`: angle turned through since the start; NaN where it is not given. */
+struct track_point { double x[3], u[3], w[3], turn[3]; };
+struct track { size_t steps, count; struct track_point *point; /* [step asked for][id - 1] */ };
+
+/*
+ * Run `scene` from these states for at[steps - 1] steps and read the spheres at each step of `at` (ascending). The scene gets its
+ * run and output from here. False: recorded already.
+ */
+bool track_ask(struct check_run *run, const char *name, json_t *scene, const struct state_row *start, size_t count, const int *at,
+               size_t steps, struct track *t);
+const struct track_point *track_at(const struct track *t, size_t step, size_t sphere);
+void track_free(struct track *t);
+
+/* Mass, moment of inertia and frictions of a sphere of species 1. */
+struct free_sphere { double radius, mass, inertia, friction, spin_friction; };
+struct free_sphere free_sphere(const struct model *m);
+
+void check_langevin(struct check_run *run);
+void check_shear(struct check_run *run);
+
+#endif
