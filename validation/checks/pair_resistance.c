@@ -4,6 +4,7 @@
  *
  * Invariants of that R, without any formula: zero at rest, linear, third law, symmetric, positive semidefinite, rank 5
  * (one squeeze and two times two sliding modes), and no other terms than isotropy about n allows (no twist).
+ * With one-body drag in the scene the `total` is measured: it must resist all twelve modes.
  * Then the seven coefficients X_A .. C_22 one by one, each wherever it stands in R: the verdict names the entry, and
  * tells from the pattern over gaps and sizes what kind of mistake it is.
  */
@@ -31,6 +32,8 @@ enum { ENTRIES = sizeof entries / sizeof *entries };
 struct survey {
     double xi[GAPS], ratio[SIZES];                  /* a_2/a_1 */
     size_t gaps, sizes;
+    const char *force;                              /* lubrication, or total where drag acts too */
+    int modes;                                      /* that R must resist: 5, or 12 */
     double measured[ENTRIES][SIZES][GAPS], expected[ENTRIES][SIZES][GAPS];
     struct worst rest, linear, third_law, symmetry, positive, rank, other;
     struct entry asymmetric;                        /* where the symmetry is worst */
@@ -58,10 +61,10 @@ static void fill_book(struct check_run *run, const struct model *m, struct surve
     gsl_rng_free(random);
 }
 
-static void six(const struct pair_answer *a, size_t state, double out[COLUMNS])
+static void six(const struct pair_answer *a, const char *force, size_t state, double out[COLUMNS])
 {
     for (int side = 0; side < 2; side++) {
-        const double *own = forces_at(&a->forces, state, "lubrication", 1 + side);
+        const double *own = forces_at(&a->forces, state, force, 1 + side);
         for (int k = 0; k < 3; k++) {
             out[3 * side + k] = own[k];
             out[6 + 3 * side + k] = own[3 + k];
@@ -139,7 +142,7 @@ static void see_invariants(struct survey *s, const double R[COLUMNS][COLUMNS], s
         }
     spectrum(R, &smallest, &rank);
     worst_see(&s->positive, fmin(smallest, 0), 0, 1, at);
-    worst_see(&s->rank, rank, 5, 1, at);
+    worst_see(&s->rank, rank, s->modes, 1, at);
 }
 
 /* One geometry: its states start at `first` (random motion, rest, twelve columns). */
@@ -150,7 +153,7 @@ static void measure(struct survey *s, const struct model *m, const struct pair_b
     const struct pair_state *p = &book->item[first];
     double answer[COLUMNS], R[COLUMNS][COLUMNS], R_theory[COLUMNS * COLUMNS], scaled_R[COLUMNS][COLUMNS], n[3], r, unit[3];
     for (int column = 0; column < COLUMNS; column++) {
-        six(a, first + 2 + (size_t)column, answer);
+        six(a, s->force, first + 2 + (size_t)column, answer);
         for (int i = 0; i < COLUMNS; i++)
             R[i][column] = -answer[i] / SPEED;
     }
@@ -160,9 +163,9 @@ static void measure(struct survey *s, const struct model *m, const struct pair_b
 
     struct expected e;
     expect_lubrication(m, p, &e);
-    six(a, first + 1, answer);
+    six(a, s->force, first + 1, answer);
     worst_see_vector(&s->rest, answer, (const double[COLUMNS]){ 0 }, COLUMNS, e.force_scale, first + 1);
-    six(a, first, answer);
+    six(a, s->force, first, answer);
     for (int i = 0; i < COLUMNS; i++) {
         double linear = 0;
         for (int j = 0; j < COLUMNS; j++)
@@ -267,11 +270,12 @@ static void judge(struct check_run *run, const struct pair_book *book, const cha
                 sentence, compare(w), describe(&book->item[w->at], w->at));
 }
 
-static void judge_all(struct check_run *run, const struct survey *s, const struct pair_book *book)
+static void judge_all(struct check_run *run, const struct survey *s, const struct model *m, const struct pair_book *book)
 {
     judge(run, book, "zero at rest", &s->rest, "lubrication acts on a pair at rest");
     judge(run, book, "linear in velocity", &s->linear, "the force is not linear in the velocities");
-    judge(run, book, "third law of R", &s->third_law, "an entry of R for the force on 2 is not minus that for 1");
+    if (!m->has_drag)
+        judge(run, book, "third law of R", &s->third_law, "an entry of R for the force on 2 is not minus that for 1");
     char fault[256], mirror[96];
     snprintf(mirror, sizeof mirror, "%s", entry_name(&(struct entry){ THEORY_SCALARS, s->asymmetric.column, s->asymmetric.row }));
     snprintf(fault, sizeof fault, "R is not symmetric, in the %s against the %s", entry_name(&s->asymmetric), mirror);
@@ -279,6 +283,8 @@ static void judge_all(struct check_run *run, const struct survey *s, const struc
     judge(run, book, "R positive semidefinite", &s->positive,
           "R has a negative eigenvalue, in units of its largest: some motion gains energy");
     judge(run, book, "rank of R", &s->rank, "the number of modes that R resists is wrong");
+    if (m->has_drag)
+        return;
     judge(run, book, "no other terms in R", &s->other, "R has terms that isotropy about n forbids, or a resistance to twist");
     for (int c = 0; c < THEORY_SCALARS; c++)
         judge_coefficient(run, s, c);
@@ -326,13 +332,16 @@ void pair_resistance(struct check_run *run)
     struct pair_answer answer = { 0 };
     struct survey *s = calloc(1, sizeof *s);
     s->rest = s->linear = s->third_law = s->symmetry = s->positive = s->rank = s->other = (struct worst)WORST_NONE;
+    s->force = m.has_drag ? "total" : "lubrication";
+    s->modes = m.has_drag ? COLUMNS : 5;
     fill_book(run, &m, s, &book);
-    if (book_ask(run, "columns", run->gate_case->scene, &book, "lubrication", &answer)) {
+    if (book_ask(run, "columns", run->gate_case->scene, &book, s->force, &answer)) {
         for (size_t b = 0; b < s->sizes; b++)
             for (size_t g = 0; g < s->gaps; g++)
                 measure(s, &m, &book, &answer, b, g);
-        judge_all(run, s, &book);
-        draw(run, s);
+        judge_all(run, s, &m, &book);
+        if (!m.has_drag)
+            draw(run, s);
     }
     forces_free(&answer.forces);
     book_free(&book);
