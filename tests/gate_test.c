@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 static char folder[] = "/tmp/gate-test-XXXXXX";
@@ -152,16 +153,14 @@ static void helpers_of_a_candidate_die_with_it(void)
         fclose(file);
     /* it may stay as a zombie until init collects it, so ask its state, not its existence */
     snprintf(path, sizeof path, "/proc/%d/stat", pid);
-    char state = 'Z';
-    for (int k = 0; k < 50; k++, usleep(20000)) {
+    char state = '?';
+    for (int k = 0; k < 50 && state != 'Z'; k++) {
         file = fopen(path, "r");
-        const int got = file ? fscanf(file, "%*d (%*[^)]) %c", &state) : 0;
+        if (!file || fscanf(file, "%*d (%*[^)]) %c", &state) != 1)
+            state = 'Z'; /* gone altogether */
         if (file)
             fclose(file);
-        if (got != 1 || state == 'Z')
-            state = 'Z';
-        if (state == 'Z')
-            break;
+        nanosleep(&(struct timespec){ .tv_nsec = 20000000 }, NULL);
     }
     check_true(state == 'Z', "the helper is gone");
 }

@@ -149,7 +149,7 @@ void results_free(struct results *r)
 static double badness(const struct result *r)
 {
     const double excess = !isnan(r->p) ? -log10(r->p + 1e-300) / 6 : r->error / r->tolerance;
-    return 1e6 * r->verdict + (r->verdict == VERDICT_FAIL && r->judgement == INVARIANT ? 5e5 : 0)
+    return 1e6 * (double)(int)r->verdict + (r->verdict == VERDICT_FAIL && r->judgement == INVARIANT ? 5e5 : 0)
            + (isnan(excess) ? 4e5 : fmin(excess, 4e5));
 }
 
