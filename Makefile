@@ -26,13 +26,20 @@ setup: ## install what is missing (Debian packages; as root or with sudo)
 	@tools/setup.sh
 
 validate: all ## the fast tier against our own solver, and its report
-	$B/gate run --candidate "$B/shear --evaluate" --jobs $(JOBS) --report $B/report
+	$B/gate run --candidate "$B/shear --evaluate" --jobs $(JOBS) --work $B/cases --report $B/report
 
 test: ## build and run the unit tests
 	@$(MAKE_ALL) $(PROGRAMS) $B/unit-tests
 	$B/unit-tests
 
 # ---- programs ----
+
+# The commit that programs print: a file that changes with it, so that what names it is compiled anew.
+$B/commit: FORCE
+	@mkdir -p $(@D)
+	@echo '$(COMMIT)' | cmp -s - $@ || echo '$(COMMIT)' >$@
+$B/obj/solver/shear.o $B/obj/solver/describe.o $B/obj/validation/gate.o: $B/commit
+FORCE:
 
 $B/obj/solver/%.o: solver/%.c
 	@mkdir -p $(@D)
@@ -74,7 +81,7 @@ coverage: ## lines of solver/ that tests and fast tier execute (at least 85 %)
 sanitize: ## unit tests and the gate's cases under address and undefined-behaviour sanitizers
 	@$(MAKE_ALL) B=$B/sanitize CFLAGS="-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -Wno-error" $B/sanitize/unit-tests $B/sanitize/shear $B/sanitize/gate $B/sanitize/lammps-candidate
 	$B/sanitize/unit-tests
-	GATE_REFERENCE=$B/sanitize/lammps-candidate $B/sanitize/gate run --candidate "$B/sanitize/shear --evaluate" --jobs $(JOBS) --report $B/sanitize/report
+	GATE_REFERENCE=$B/sanitize/lammps-candidate $B/sanitize/gate run --candidate "$B/sanitize/shear --evaluate" --jobs $(JOBS) --work $B/sanitize/cases --report $B/sanitize/report
 	@echo "sanitize: clean"
 
 memcheck: all ## valgrind on one run of everything at once
@@ -92,5 +99,5 @@ help: ## this list
 clean: ## remove build/
 	rm -rf $B
 
-.PHONY: all setup validate test lines coverage sanitize memcheck faults bench help clean
+.PHONY: all setup validate test lines coverage sanitize memcheck faults bench help clean FORCE
 -include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS) $(LAMMPS)))

@@ -25,6 +25,8 @@ while [ $((k += 1)) -lt "$count" ]; do
     for layer in 1 2 3 5 6; do
         build/gate run --candidate "$work/build/shear --evaluate" --layer $layer --jobs "$(nproc)" --work "$work/cases" --report "$work/report" \
             >"$work/gate.txt" 2>&1 && continue
+        code=$?
+        [ $code = 1 ] || [ $code = 3 ] || { echo "faults: the gate itself ended with $code"; cat "$work/gate.txt"; exit 1; }
         verdict=caught
         where=$(awk '/ FAIL | inconclusive / { print $1 " " $2; exit }' "$work/gate.txt")
         said=$(grep -m1 '  *fails: \|  *inconclusive: ' "$work/gate.txt" | sed 's/^ *//')
