@@ -1,6 +1,6 @@
 /*
  * Random numbers as a function of what they are for (counter-based): (seed, realisation, stream, step, tags of the pair,
- * image) -> eight numbers of mean 0 and variance 1. The order in which they are asked for does not matter, so the same
+ * image) -> six numbers of mean 0 and variance 1. The order in which they are asked for does not matter, so the same
  * scene has the same noise in any loop order, in any number of processes, and after a restart.
  *
  * Generator: Philox4x32-10, Salmon et al. (2011), from the Random123 library. Gaussian numbers by Box & Muller (1958).
@@ -35,27 +35,27 @@ static inline philox4x32_ctr_t noise_words(const struct noise_key *key, const st
     return philox4x32(counter, both);
 }
 
-static inline void noise_four(uint32_t block, enum noise_law law, const struct noise_key *key, const struct noise_place *at, double z[4])
+/* Two random words to two independent numbers. */
+static inline void noise_two(enum noise_law law, uint32_t first, uint32_t second, double z[2])
 {
-    const philox4x32_ctr_t w = noise_words(key, at, block);
     if (law == NOISE_UNIFORM) {
-        for (int k = 0; k < 4; k++)
-            z[k] = sqrt(12.0) * (noise_fraction(w.v[k]) - 0.5);
+        z[0] = sqrt(12.0) * (noise_fraction(first) - 0.5);
+        z[1] = sqrt(12.0) * (noise_fraction(second) - 0.5);
         return;
     }
-    for (int k = 0; k < 4; k += 2) {
-        const double size = sqrt(-2.0 * log(noise_fraction(w.v[k]))), angle = 2.0 * M_PI * noise_fraction(w.v[k + 1]);
-        z[k] = size * cos(angle);
-        z[k + 1] = size * sin(angle);
-    }
+    const double size = sqrt(-2.0 * log(noise_fraction(first))), angle = 2.0 * M_PI * noise_fraction(second);
+    z[0] = size * cos(angle);
+    z[1] = size * sin(angle);
 }
 
 /* Two independent vectors of independent numbers. */
 static inline void noise_vectors(enum noise_law law, const struct noise_key *key, const struct noise_place *at, vec3 *first, vec3 *second)
 {
-    double z[8];
-    noise_four(0, law, key, at, z);
-    noise_four(1, law, key, at, z + 4);
+    const philox4x32_ctr_t v = noise_words(key, at, 0), w = noise_words(key, at, 1);
+    double z[6];
+    noise_two(law, v.v[0], v.v[1], z);
+    noise_two(law, v.v[2], v.v[3], z + 2);
+    noise_two(law, w.v[0], w.v[1], z + 4);
     *first = vec(z[0], z[1], z[2]);
     *second = vec(z[3], z[4], z[5]);
 }

@@ -32,6 +32,7 @@ struct ensemble {
     const double *time;
     double kT, dt;
     const char *label;               /* "kT 0.31" */
+    FILE *plot;                      /* t/tau, measured, expected, error of each mean square displacement; NULL: not drawn */
 };
 
 static double velocity_at(const struct ensemble *e, const struct kind *k, size_t step, size_t sphere, int c)
@@ -92,6 +93,8 @@ static void judge_msd(const struct ensemble *e, const struct kind *k, double eps
                 sum += gsl_pow_2(path_at(e, k, s, i, c));
         table[s][0] = sum / (double)n;
         table[s][1] = theory_langevin_msd(e->kT, k->mass, k->friction, e->time[s]);
+        if (e->plot && !k->turning)
+            fprintf(e->plot, "%g %g %g %g\n", e->time[s] * k->friction / k->mass, table[s][0], table[s][1], table[s][0] * sqrt(2.0 / (double)n));
         const double ratio = table[s][0] / table[s][1], p = statistics_variance_p(ratio, (double)n, eps);
         if (!(p >= least) || s == 0) {
             least = p;
@@ -211,7 +214,8 @@ static void judge_independence(const struct ensemble *e, const struct kind kinds
 }
 
 /* `which`: number of the temperature; each has its own seed, else all would see the same numbers in other units. */
-static void judge_temperature_of(struct check_run *run, const struct model *m, const struct free_sphere *sphere, double kT, unsigned which)
+static void judge_temperature_of(struct check_run *run, const struct model *m, const struct free_sphere *sphere, double kT, unsigned which,
+                                 FILE *plot)
 {
     const json_t *parameters = run->gate_case->parameters;
     const size_t count = (size_t)run->samples * (size_t)scene_number(parameters, "spheres", 0);
@@ -245,7 +249,8 @@ static void judge_temperature_of(struct check_run *run, const struct model *m, c
     snprintf(name, sizeof name, "kT-%g", kT);
     struct track track;
     if (steps > 0 && track_ask(run, name, scene, start, count, at, steps, &track)) {
-        const struct ensemble e = { .run = run, .track = &track, .start = start, .time = time, .kT = kT, .dt = dt, .label = label };
+        const struct ensemble e = { .run = run, .track = &track, .start = start, .time = time, .kT = kT, .dt = dt, .label = label,
+                                    .plot = plot };
         const struct kind kinds[2] = {
             { "translation", "velocity", "displacement", sphere->mass, sphere->friction, false },
             { "rotation", "spin", "angle turned", sphere->inertia, sphere->spin_friction, true } };
@@ -270,15 +275,45 @@ static void judge_temperature_of(struct check_run *run, const struct model *m, c
     json_decref(scene);
 }
 
+/* Mean square displacement against time: points measured, lines Langevin's. */
+static void draw(struct check_run *run, const double *kT, size_t temperatures)
+{
+    char path[PATH_LENGTH], command[PATH_LENGTH + 64];
+    path_join(path, run->work, "msd.gnuplot");
+    FILE *f = fopen(path, "w");
+    if (!f)
+        return;
+    fprintf(f, "set terminal svg size 720,460 enhanced font 'sans,12'\nset output 'msd.svg'\nset logscale xy\nset key top left\n"
+               "set format y '10^{%%L}'\nset xlabel 'time / relaxation time'\nset ylabel 'mean square displacement per component'\nplot ");
+    for (size_t k = 0; k < temperatures; k++)
+        fprintf(f, "%s'msd.dat' index %zu using 1:3 with lines lc %zu notitle, '' index %zu using 1:2:4 with yerrorbars pt 7 ps 0.6 lc %zu title 'kT = %g'",
+                k ? ", " : "", k, k + 1, k, k + 1, kT[k]);
+    fputc('\n', f);
+    fclose(f);
+    snprintf(command, sizeof command, "cd '%s' && gnuplot msd.gnuplot 2>gnuplot.log", run->work);
+    if (system(command) == 0 && run->results.count > 0)
+        result_picture(&run->results.item[0], "msd.svg");
+}
+
 void check_langevin(struct check_run *run)
 {
     struct model m;
     double kT[8];
     size_t temperatures;
+    char path[PATH_LENGTH];
     if (!model_read(run, run->gate_case->scene, &m))
         return;
     const struct free_sphere sphere = free_sphere(&m);
     parameter_list(run->gate_case->parameters, "kT", kT, &temperatures, 8);
-    for (size_t k = 0; k < temperatures; k++)
-        judge_temperature_of(run, &m, &sphere, kT[k], (unsigned)k);
+    path_join(path, run->work, "msd.dat");
+    FILE *plot = fopen(path, "w");
+    for (size_t k = 0; k < temperatures; k++) {
+        judge_temperature_of(run, &m, &sphere, kT[k], (unsigned)k, plot);
+        if (plot)
+            fputs("\n\n", plot);
+    }
+    if (plot) {
+        fclose(plot);
+        draw(run, kT, temperatures);
+    }
 }
