@@ -1,6 +1,6 @@
 #!/bin/sh
 # The tour: everything that runs Li's model with velocity Verlet, in reading order, comments included. At most 2000 lines.
-# Beside the tour: reading JSON (settings), the step limit, the check of a scene, starts, observers, outputs, the gate's cases.
+# Beside the tour: reading JSON (settings), the step limit, carrying contact histories over to new lists, the check of a scene, starts, observers, outputs, the gate's cases.
 set -eu
 cd "$(dirname "$0")/../solver"
 tour="shear.c scene.h scene.c simulation.h simulation.c
