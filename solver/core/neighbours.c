@@ -1,4 +1,5 @@
 #include "core/neighbours.h"
+#include "core/history.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -184,45 +185,7 @@ static void list_all(struct neighbours *n, const struct box *box, const struct p
     free(g.cell);
 }
 
-/* ---- history: carried from the old list to the new by (i, j, image) ---- */
-
-static int by_pair(const void *left, const void *right)
-{
-    const struct candidate *a = left, *b = right;
-    return a->i != b->i ? (a->i > b->i) - (a->i < b->i)
-         : a->j != b->j ? (a->j > b->j) - (a->j < b->j) : (a->image > b->image) - (a->image < b->image);
-}
-
-struct remembered { struct candidate key; vec3 history; };
-
-/* The non-zero histories of the present list, sorted. NULL if there is no memory for them. */
-static struct remembered *remember(const struct neighbours *n, int *kept, struct error *e)
-{
-    struct remembered *old = malloc(((size_t)n->count + 1) * sizeof *old);
-    *kept = 0;
-    for (int k = 0; old && n->made && k < n->count; k++)
-        if (dot(n->history[k], n->history[k]) > 0.0)
-            old[(*kept)++] = (struct remembered){ n->candidate[k], n->history[k] };
-    if (old)
-        qsort(old, (size_t)*kept, sizeof *old, by_pair);
-    else
-        error_out_of_memory(e);
-    return old;
-}
-
-static void recall(struct neighbours *n, const struct remembered *old, int kept, struct error *e)
-{
-    vec3 *fresh = realloc(n->history, ((size_t)n->room + 1) * sizeof *fresh);
-    if (!fresh) {
-        error_out_of_memory(e);
-        return;
-    }
-    n->history = fresh;
-    for (int k = 0; k < n->count; k++) {
-        const struct remembered *found = bsearch(&n->candidate[k], old, (size_t)kept, sizeof *old, by_pair);
-        n->history[k] = found ? found->history : vec(0, 0, 0);
-    }
-}
+/* ---- the list ---- */
 
 static bool near_room(struct near_pairs *near, int room, struct error *e)
 {
@@ -251,11 +214,11 @@ static bool make_list(struct neighbours *n, struct box *box, struct particles *p
     box_remap(box);
     box_wrap(box, p);
     int kept = 0;
-    struct remembered *old = n->keeps_history ? remember(n, &kept, e) : NULL;
+    struct remembered *old = n->keeps_history ? history_remember(n, &kept, e) : NULL;
     if (n->largest_range > 0.0 && !error_raised(e))
         list_all(n, box, p, e);
     if (old && !error_raised(e))
-        recall(n, old, kept, e);
+        history_recall(n, old, kept, e);
     free(old);
     memcpy(n->listed_at, p->position, (size_t)p->count * sizeof *p->position);
     n->listed_time = box->time;

@@ -6,7 +6,13 @@
 
 typedef struct { double m[6][6]; } block;
 
-static double limit_of(double g, double w2) { return 4.0 / (g + sqrt(g * g + 4.0 * w2)); }
+/* From w^2 dt^2 + 2 g dt = 4; an implicit friction step leaves w alone to limit. */
+static double limit_of(const struct suspension *s, double g, double w2)
+{
+    if (s->implicit_friction)
+        g = 0.0;
+    return 4.0 / (g + sqrt(g * g + 4.0 * w2));
+}
 
 /* Largest eigenvalue of a symmetric positive semidefinite block, from above by at most 6 %: |A^16|^(1/16), Frobenius norm. */
 static double largest_eigenvalue(block A)
@@ -89,7 +95,7 @@ static void judge(struct step_limit *worst, const struct suspension *s, const st
     double drag[2];
     drag_rates(s, only, species, drag);
     const double g = largest_eigenvalue(at->friction) + fmax(drag[0], drag[1]), w2 = largest_eigenvalue(at->stiffness);
-    const double dt = limit_of(g, w2);
+    const double dt = limit_of(s, g, w2);
     if (dt < worst->dt)
         *worst = (struct step_limit){ dt, NULL, tag, neighbours, g, w2 };
 }
@@ -177,7 +183,7 @@ static bool surely_stable(const struct suspension *s, double dt)
     for (int i = 0; stable && i < p->count; i++) {
         double drag[2];
         drag_rates(s, NULL, p->species[i], drag);
-        stable = dt < limit_of(trace[i][0] + fmax(drag[0], drag[1]), trace[i][1]);
+        stable = dt < limit_of(s, trace[i][0] + fmax(drag[0], drag[1]), trace[i][1]);
     }
     struct step_limit lone = { INFINITY, NULL, 0, 0, 0.0, 0.0 };
     judge_lone_pairs(&lone, s, NULL);
@@ -193,17 +199,17 @@ double step_advised(const struct suspension *s)
     for (int a = 0; a < p->species_count; a++) {
         double drag[2];
         drag_rates(s, NULL, a, drag);
-        if (drag[0] > 0.0)
+        if (drag[0] > 0.0 && !s->implicit_friction)
             dt = fmin(dt, 0.02 / fmax(drag[0], drag[1]));
         for (int b = 0; b < p->species_count && touching > 0; b++) {
             const struct response r = response_of(s, NULL, a, b, -1e-300);
             const double per_mass = 1.0 / p->kind[a].mass + 1.0 / p->kind[b].mass;
             if (r.normal_stiffness > 0.0)
                 dt = fmin(dt, 0.03 * M_PI / sqrt(r.normal_stiffness * per_mass));
-            if (r.resistance.X_A > 0.0 && s->kT > 0.0)
+            if (r.resistance.X_A > 0.0 && s->kT > 0.0 && !s->implicit_friction)
                 dt = fmin(dt, 0.1 / (r.resistance.X_A * per_mass));
             /* z neighbours all around bring a particle's rate to about z/3 of one pair's */
-            if (r.resistance.X_A > 0.0)
+            if (r.resistance.X_A > 0.0 && !s->implicit_friction)
                 dt = fmin(dt, 0.5 / (r.resistance.X_A * per_mass * fmax(1.0, touching / 3.0)));
         }
     }

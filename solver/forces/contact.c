@@ -92,7 +92,7 @@ struct force *contact_new(struct settings *s, const struct suspension *in, struc
     (void)in;
     if (!law)
         return error_out_of_memory(e), NULL;
-    law->base = (struct force){ .name = "contact", .origin_name = { "contact_normal" }, .range_factor = 1.0,
+    law->base = (struct force){ .name = "contact", .origin_name = { "contact_normal" }, .kind = POTENTIAL, .range_factor = 1.0,
                                 .add = contact_add, .respond = contact_respond };
     law->normal_stiffness = settings_positive(s, "normal_stiffness", e);
     law->friction = settings_at_least(s, "friction", 0.0, e);
