@@ -68,16 +68,12 @@ static bool place(struct suspension *s, const struct state_file *states, int sta
     return state_file_place(states, state, s, e) && neighbours_start(&s->neighbours, &s->box, &s->particles, e);
 }
 
-static struct moment frozen_moment(const struct suspension *s, int64_t step)
-{
-    return (struct moment){ .box = &s->box, .step = step, .dt = s->dt, .drift_velocity = s->particles.velocity, .drift_spin = s->particles.spin };
-}
-
 /* Forces and torques of one force alone are in the particles' arrays afterwards; the stress is added to. */
 static void act_alone(const struct force *f, struct suspension *s, int64_t step, struct stress *stress)
 {
     struct particles *p = &s->particles;
-    const struct moment now = frozen_moment(s, step);
+    struct moment now = moment_of(s, 0.0);
+    now.step = step;
     memset(p->force, 0, (size_t)p->count * sizeof *p->force);
     if (p->torque)
         memset(p->torque, 0, (size_t)p->count * sizeof *p->torque);

@@ -176,12 +176,10 @@ static bool build_output(struct settings *root, struct simulation *sim, struct e
 
 static bool build_key(struct settings *root, struct suspension *s, struct error *e)
 {
-    if (settings_has(root, "seed"))
-        s->key.seed = (uint32_t)settings_whole(root, "seed", 0, UINT32_MAX, e);
-    else if (s->kT > 0.0)
+    s->key.seed = (uint32_t)settings_whole_or(root, "seed", 0, 0, UINT32_MAX, e);
+    s->key.realisation = (uint32_t)settings_whole_or(root, "realisation", 0, 0, 16777215, e);
+    if (s->kT > 0.0 && !settings_has(root, "seed"))
         error_raise(e, ERROR_INPUT, "seed is missing; it must be a whole number, for fluid.kT > 0 draws random numbers");
-    if (settings_has(root, "realisation"))
-        s->key.realisation = (uint32_t)settings_whole(root, "realisation", 0, 16777215, e);
     return !error_raised(e);
 }
 
@@ -190,7 +188,7 @@ static bool build(struct settings *root, const char *path, const struct scene_op
     struct suspension *s = &sim->suspension;
     struct settings chosen = { .node = NULL };
     snprintf(sim->about, sizeof sim->about, "%s", settings_text(root, "about", e));
-    s->dimensions = settings_has(root, "dimensions") ? (int)settings_whole(root, "dimensions", 2, 3, e) : 3;
+    s->dimensions = (int)settings_whole_or(root, "dimensions", 3, 2, 3, e);
     s->kinetic_origin = stress_origin(&s->stress, "kinetic");
     /* Keys that are known also where only forces are asked for; the schema is for editors. */
     settings_has(root, "run"), settings_has(root, "output"), settings_has(root, "$schema");

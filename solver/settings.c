@@ -101,6 +101,11 @@ long long settings_whole(struct settings *s, const char *key, long long least, l
     return json_integer_value(value);
 }
 
+long long settings_whole_or(struct settings *s, const char *key, long long otherwise, long long least, long long most, struct error *e)
+{
+    return look_up(s, key) ? settings_whole(s, key, least, most, e) : otherwise;
+}
+
 bool settings_flag(struct settings *s, const char *key, struct error *e)
 {
     const json_t *value = look_up(s, key);

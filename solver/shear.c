@@ -26,8 +26,7 @@ static const char usage[] =
 
 static void run_scene(const char *scene, const char *folder, const struct scene_options *options, bool check, struct error *e)
 {
-    static struct simulation run;
-    struct simulation *sim = &run;
+    static struct simulation sim[1];
     const bool built = scene_build(scene, options, sim, e);
     if (built && check && neighbours_find(&sim->suspension.neighbours, &sim->suspension.box, &sim->suspension.particles, &(bool){ false }, e))
         describe_scene(sim, e);

@@ -36,12 +36,7 @@ static inline struct resistance resistance_at(const struct resistance_sizes *s, 
                                 .C_11 = s->log.C_11 * TTL, .C_12 = s->log.C_12 * TTL, .C_22 = s->log.C_22 * TTL };
 }
 
-/*
- * What a pair of these resistances does at relative velocity dU = U_j - U_i and spins W: force on i (minus that on j), torques on i and j.
- *
- *     F_i = (X_A n n + Y_A (I - n n)) dU + (B_1 W_i + B_2 W_j) x n
- *     T_i = B_1 dU x n - (I - n n)(C_11 W_i + C_12 W_j),    T_j = B_2 dU x n - (I - n n)(C_12 W_i + C_22 W_j)
- */
+/* Force on i and torques on i and j at relative velocity dU = U_j - U_i and spins W: the equations of forces/lubrication.c. */
 static inline vec3 resistance_act(const struct resistance *R, vec3 n, vec3 dU, vec3 W_i, vec3 W_j, vec3 *torque_i, vec3 *torque_j)
 {
     const vec3 rolling = cross(plus(scaled(W_i, R->B_1), scaled(W_j, R->B_2)), n), twist = cross(dU, n);

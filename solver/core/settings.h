@@ -30,6 +30,7 @@ double settings_positive(struct settings *s, const char *key, struct error *e);
 double settings_at_least(struct settings *s, const char *key, double least, struct error *e);
 double settings_number_or(struct settings *s, const char *key, double otherwise, struct error *e);
 long long settings_whole(struct settings *s, const char *key, long long least, long long most, struct error *e);
+long long settings_whole_or(struct settings *s, const char *key, long long otherwise, long long least, long long most, struct error *e);
 bool settings_flag(struct settings *s, const char *key, struct error *e);
 bool settings_flag_or(struct settings *s, const char *key, bool otherwise, struct error *e);
 const char *settings_text(struct settings *s, const char *key, struct error *e);

@@ -32,6 +32,12 @@ struct suspension {
     double start_time, dt;                  /* time = start_time + step dt */
 };
 
+/* The present moment after a drift at the particles' own velocities; of no duration: nothing has moved. */
+static inline struct moment moment_of(const struct suspension *s, double drift_time)
+{
+    return (struct moment){ &s->box, s->step, s->dt, s->particles.velocity, s->particles.spin, drift_time };
+}
+
 const struct force *suspension_force(const struct suspension *s, const char *name);     /* NULL: the scene has none */
 
 /* Takes up a force: its range, its stress rows, what it keeps. */

@@ -58,8 +58,9 @@ static bool predicted_step(const struct dynamics *self, struct suspension *s, bo
             half->spin[i] = p->spin[i];
     }
     kick(s, 0.5 * s->dt);                                   /* predicts, with the old forces */
-    const struct moment now = { .box = &s->box, .step = s->step, .dt = s->dt, .drift_velocity = half->velocity, .drift_spin = half->spin,
-                                .drift_time = s->dt };
+    struct moment now = moment_of(s, s->dt);
+    now.drift_velocity = half->velocity;
+    now.drift_spin = half->spin;
     suspension_add_forces(s, ALL_KINDS, &now);
     for (int i = 0; i < p->count; i++) {
         p->velocity[i] = half->velocity[i];

@@ -25,11 +25,6 @@
 
 struct split_state { struct friction friction; vec3 *mean_velocity, *mean_spin; };
 
-static struct moment moment_of(const struct suspension *s)
-{
-    return (struct moment){ .box = &s->box, .step = s->step, .dt = s->dt, .drift_velocity = s->particles.velocity, .drift_spin = s->particles.spin };
-}
-
 static void split_free(struct suspension *s)
 {
     struct split_state *own = s->dynamics_state;
@@ -54,7 +49,7 @@ static bool split_begin(const struct dynamics *self, struct suspension *s, bool 
     }
     if (!suspension_find(s, relisted, e))
         return false;
-    const struct moment now = moment_of(s);
+    const struct moment now = moment_of(s, 0.0);
     if (s->measuring)
         suspension_add_forces(s, FRICTION | NOISE, &now);   /* part of the stress at the start, but not of the first kick */
     suspension_add_forces(s, POTENTIAL, &now);
@@ -64,7 +59,7 @@ static bool split_begin(const struct dynamics *self, struct suspension *s, bool 
 /* U, W over dt at fixed positions; particles' forces are those of the mean velocity afterwards. */
 static bool friction_step(struct suspension *s, struct friction *f, struct error *e)
 {
-    const struct moment now = moment_of(s);
+    const struct moment now = moment_of(s, 0.0);
     const bool measuring = s->measuring;
     if (!friction_gather(f, s, s->dt, e))
         return false;
@@ -109,10 +104,9 @@ static bool split_step(const struct dynamics *self, struct suspension *s, bool *
         return false;
     *relisted = *relisted || halfway;
     mean_motion(own, &s->particles);
-    struct moment now = moment_of(s);
+    struct moment now = moment_of(s, s->dt);
     now.drift_velocity = own->mean_velocity;
     now.drift_spin = own->mean_spin;
-    now.drift_time = s->dt;
     suspension_add_forces(s, POTENTIAL, &now);
     kick(s, 0.5 * s->dt);
     return true;

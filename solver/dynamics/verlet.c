@@ -18,13 +18,6 @@
 #include "core/motion.h"
 #include "dynamics/dynamics.h"
 
-static void forces_after(struct suspension *s, double drift_time)
-{
-    const struct moment now = { .box = &s->box, .step = s->step, .dt = s->dt, .drift_velocity = s->particles.velocity,
-                                .drift_spin = s->particles.spin, .drift_time = drift_time };
-    suspension_add_forces(s, ALL_KINDS, &now);
-}
-
 static bool verlet_step(const struct dynamics *self, struct suspension *s, bool *relisted, struct error *e)
 {
     (void)self;
@@ -34,7 +27,8 @@ static bool verlet_step(const struct dynamics *self, struct suspension *s, bool 
     box_set_time(&s->box, s->start_time + (double)s->step * s->dt);
     if (!suspension_find(s, relisted, e))
         return false;
-    forces_after(s, s->dt);
+    const struct moment now = moment_of(s, s->dt);
+    suspension_add_forces(s, ALL_KINDS, &now);
     kick(s, 0.5 * s->dt);
     return true;
 }
@@ -44,7 +38,8 @@ static bool verlet_begin(const struct dynamics *self, struct suspension *s, bool
     (void)self;
     if (!suspension_find(s, relisted, e))
         return false;
-    forces_after(s, 0.0);
+    const struct moment now = moment_of(s, 0.0);
+    suspension_add_forces(s, ALL_KINDS, &now);
     return true;
 }
 
