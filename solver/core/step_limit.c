@@ -6,13 +6,8 @@
 
 typedef struct { double m[6][6]; } block;
 
-/* From w^2 dt^2 + 2 g dt = 4; an implicit friction step leaves w alone to limit. */
-static double limit_of(const struct suspension *s, double g, double w2)
-{
-    if (s->implicit_friction)
-        g = 0.0;
-    return 4.0 / (g + sqrt(g * g + 4.0 * w2));
-}
+/* From w^2 dt^2 + 2 g dt = 4. */
+static double limit_of(double g, double w2) { return 4.0 / (g + sqrt(g * g + 4.0 * w2)); }
 
 /* Largest eigenvalue of a symmetric positive semidefinite block, from above by at most 6 %: |A^16|^(1/16), Frobenius norm. */
 static double largest_eigenvalue(block A)
@@ -72,11 +67,17 @@ static void add_pair(struct blocks *at, const struct suspension *s, const struct
     add_side(&at->stiffness, weight, own->mass, own->inertia, n, side, r->normal_stiffness, k, -k * lever, k * lever * lever);
 }
 
+/* Does this force limit an explicit step? Not where an implicit friction step takes care of it. */
+static bool limits(const struct suspension *s, const struct force *f, const struct force *only)
+{
+    return (!only || only == f) && !(s->implicit_friction && f->kind == FRICTION);
+}
+
 static struct response response_of(const struct suspension *s, const struct force *only, int a, int b, double gap)
 {
     struct response r = { 0 };
     for (int k = 0; k < s->force_count; k++)
-        if (s->force[k]->respond && (!only || only == s->force[k]))
+        if (s->force[k]->respond && limits(s, s->force[k], only))
             s->force[k]->respond(s->force[k], &s->particles, a, b, gap, &r);
     return r;
 }
@@ -85,7 +86,7 @@ static void drag_rates(const struct suspension *s, const struct force *only, int
 {
     rate[0] = rate[1] = 0.0;
     for (int k = 0; k < s->force_count; k++)
-        if (s->force[k]->respond_alone && (!only || only == s->force[k]))
+        if (s->force[k]->respond_alone && limits(s, s->force[k], only))
             s->force[k]->respond_alone(s->force[k], &s->particles, a, &rate[0], &rate[1]);
 }
 
@@ -95,7 +96,7 @@ static void judge(struct step_limit *worst, const struct suspension *s, const st
     double drag[2];
     drag_rates(s, only, species, drag);
     const double g = largest_eigenvalue(at->friction) + fmax(drag[0], drag[1]), w2 = largest_eigenvalue(at->stiffness);
-    const double dt = limit_of(s, g, w2);
+    const double dt = limit_of(g, w2);
     if (dt < worst->dt)
         *worst = (struct step_limit){ dt, NULL, tag, neighbours, g, w2 };
 }
@@ -150,7 +151,7 @@ struct step_limit step_limit_of(const struct suspension *s, struct error *e)
     double least = INFINITY;
     all.force = "no force";
     for (int k = 0; k < s->force_count; k++) {
-        if (!s->force[k]->respond && !s->force[k]->respond_alone)
+        if ((!s->force[k]->respond && !s->force[k]->respond_alone) || !limits(s, s->force[k], NULL))
             continue;
         const double own = limit_with(s, s->force[k], e).dt;
         if (own < least) {
@@ -183,7 +184,7 @@ static bool surely_stable(const struct suspension *s, double dt)
     for (int i = 0; stable && i < p->count; i++) {
         double drag[2];
         drag_rates(s, NULL, p->species[i], drag);
-        stable = dt < limit_of(s, trace[i][0] + fmax(drag[0], drag[1]), trace[i][1]);
+        stable = dt < limit_of(trace[i][0] + fmax(drag[0], drag[1]), trace[i][1]);
     }
     struct step_limit lone = { INFINITY, NULL, 0, 0, 0.0, 0.0 };
     judge_lone_pairs(&lone, s, NULL);
@@ -199,17 +200,17 @@ double step_advised(const struct suspension *s)
     for (int a = 0; a < p->species_count; a++) {
         double drag[2];
         drag_rates(s, NULL, a, drag);
-        if (drag[0] > 0.0 && !s->implicit_friction)
+        if (drag[0] > 0.0)
             dt = fmin(dt, 0.02 / fmax(drag[0], drag[1]));
         for (int b = 0; b < p->species_count && touching > 0; b++) {
             const struct response r = response_of(s, NULL, a, b, -1e-300);
             const double per_mass = 1.0 / p->kind[a].mass + 1.0 / p->kind[b].mass;
             if (r.normal_stiffness > 0.0)
                 dt = fmin(dt, 0.03 * M_PI / sqrt(r.normal_stiffness * per_mass));
-            if (r.resistance.X_A > 0.0 && s->kT > 0.0 && !s->implicit_friction)
+            if (r.resistance.X_A > 0.0 && s->kT > 0.0)
                 dt = fmin(dt, 0.1 / (r.resistance.X_A * per_mass));
             /* z neighbours all around bring a particle's rate to about z/3 of one pair's */
-            if (r.resistance.X_A > 0.0 && !s->implicit_friction)
+            if (r.resistance.X_A > 0.0)
                 dt = fmin(dt, 0.5 / (r.resistance.X_A * per_mass * fmax(1.0, touching / 3.0)));
         }
     }
@@ -230,7 +231,7 @@ bool step_is_allowed(const struct suspension *s, const char *scheme, struct erro
 {
     if (surely_stable(s, s->dt))
         return true;
-    const struct step_limit limit = step_limit_of(s, e);
+    const struct step_limit limit = step_limit_of(e);
     if (error_raised(e) || s->dt < limit.dt)
         return !error_raised(e);
     char whom[80];
