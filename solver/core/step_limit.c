@@ -231,7 +231,7 @@ bool step_is_allowed(const struct suspension *s, const char *scheme, struct erro
 {
     if (surely_stable(s, s->dt))
         return true;
-    const struct step_limit limit = step_limit_of(e);
+    const struct step_limit limit = step_limit_of(s, e);
     if (error_raised(e) || s->dt < limit.dt)
         return !error_raised(e);
     char whom[80];
