@@ -1,0 +1,185 @@
+/*
+ * Layer 4: Brownian pairs near contact keep the Boltzmann distribution
+ *
+ *     p(r) dr ~ r^2 exp(-U(h)/kT) dr ,   U = k_n h^2/2 in overlap, 0 outside
+ *
+ * whatever the friction does with the gap. Friction cannot appear in an equilibrium distribution; in explicit schemes it does, since a
+ * half step of velocity is hotter by 1/(1 - eps/2), eps = X_A(h) dt/m_eff, where the friction is larger, and pairs are
+ * rarer there by 1 - eps/2 (a spurious repulsion). Noise of the wrong size or friction taken elsewhere than its noise do the same.
+ *
+ * Waiting for a pair to sample its potential takes a million steps. Instead thousands of pairs, each alone, start from the exact
+ * distribution in a thin shell h < H, stratified, with Maxwell velocities; then nothing may change. Pairs from beyond the shell
+ * would arrive in the near zone only if they crossed H in the time of the run, so the shell is given so thick that they cannot.
+ * Per pair the time average of "is in contact" over the later samples is one number; pairs are independent; neighbours in the
+ * stratified order start at nearly the same gap, so half their mean square difference is the variance (a little too
+ * large). What matters of a sample is sum over pairs, hence normal.
+ *
+ * First result: the share in contact against Boltzmann's, null band 1 - eps/2 to 1 (a scheme may have the bias, which is small at
+ * this step). Second, where the case asks for `predicted`: a scene that declares `verlet` with half-step velocities is expected to
+ * show the depletion 1 - eps/2 at a large step. The prediction holds where friction varies little over the mean free path.
+ */
+#include "statistics.h"
+#include "two_bodies.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { CELLS = 4000 };     /* of the table of the distribution: midpoint rule, good to 1e-6 */
+
+struct shell {
+    struct model m;
+    double radius, mass, inertia, stiffness, kT, low, high, width;  /* gaps from low to high in CELLS cells */
+    double weight[CELLS + 1];                                       /* cumulative */
+    double eps;
+};
+
+static double friction_at(const struct shell *s, double h)
+{
+    double c[THEORY_SCALARS];
+    theory_scalars(&s->m.lubrication, s->radius, s->radius, 2.0 * s->radius + h, c);
+    return c[THEORY_XA];
+}
+
+/* Boltzmann weight of a cell; `depleted`: times 1 - eps(h)/2. */
+static double boltzmann(const struct shell *s, double h, bool depleted)
+{
+    const double r = 2.0 * s->radius + h, energy = h < 0.0 ? 0.5 * s->stiffness * h * h : 0.0;
+    const double eps = s->eps * friction_at(s, h) / friction_at(s, 0.0);
+    return r * r * exp(-energy / s->kT) * (depleted ? 1.0 - 0.5 * eps : 1.0);
+}
+
+static bool shell_make(struct check_run *run, const json_t *scene, struct shell *s)
+{
+    if (!model_read(run, scene, &s->m))
+        return false;
+    const struct free_sphere sphere = free_sphere(&s->m);
+    s->radius = sphere.radius;
+    s->mass = sphere.mass;
+    s->inertia = sphere.inertia;
+    s->stiffness = s->m.contact.normal_stiffness;
+    s->kT = scene_number(scene, "fluid.kT", NAN);
+    s->eps = scene_number(run->gate_case->parameters, "eps", NAN);
+    s->low = -7.0 * sqrt(s->kT / s->stiffness);
+    s->high = scene_number(run->gate_case->parameters, "shell", NAN);
+    s->width = (s->high - s->low) / CELLS;
+    for (int k = 0; k < CELLS; k++)
+        s->weight[k + 1] = s->weight[k] + boltzmann(s, s->low + (k + 0.5) * s->width, false);
+    return true;
+}
+
+/* Share of the shell's weight that is in contact. */
+static double contact_share(const struct shell *s, bool depleted)
+{
+    double inside = 0.0;
+    for (double h = s->low + 0.5 * s->width; h < 0.0; h += s->width)
+        inside += boltzmann(s, h, depleted);
+    return inside / s->weight[CELLS];
+}
+
+/* The gap below which a share u of the pairs lies. */
+static double gap_at(const struct shell *s, double u)
+{
+    int low = 0, high = CELLS;
+    const double wanted = u * s->weight[CELLS];
+    while (high - low > 1) {
+        const int middle = (low + high) / 2;
+        *(s->weight[middle] <= wanted ? &low : &high) = middle;
+    }
+    return s->low + s->width * (low + (wanted - s->weight[low]) / (s->weight[high] - s->weight[low]));
+}
+
+/* Pairs on a lattice of cells of their own, so far apart that they never meet. */
+static struct state_row *start_pairs(struct check_run *run, const struct shell *s, size_t pairs, double spacing, size_t across)
+{
+    struct state_row *row = calloc(2 * pairs, sizeof *row);
+    gsl_rng *random = pair_random(run);
+    for (size_t k = 0; row && k < pairs; k++) {
+        const size_t cell[3] = { k % across, k / across % across, k / across / across };
+        const double h = gap_at(s, ((double)k + gsl_rng_uniform(random)) / (double)pairs);
+        double n[3];
+        random_direction(random, n);
+        for (size_t side = 0; side < 2; side++) {
+            struct state_row *r = &row[2 * k + side];
+            *r = (struct state_row){ .id = (int)(2 * k + side) + 1, .species = 1 };
+            for (int c = 0; c < 3; c++)
+                r->x[c] = spacing * ((double)cell[c] + 0.5) + (side ? 0.5 : -0.5) * (2.0 * s->radius + h) * n[c];
+            random_vector(random, sqrt(s->kT / s->mass), r->u);
+            random_vector(random, sqrt(s->kT / s->inertia), r->w);
+        }
+    }
+    gsl_rng_free(random);
+    return row;
+}
+
+struct share { double mean, error; };
+
+static struct share measure(const struct track *t, double touching)
+{
+    double sum = 0.0, squares = 0.0, last = 0.0;
+    const size_t pairs = t->count / 2;
+    for (size_t k = 0; k < pairs; k++) {
+        double own = 0.0;
+        for (size_t s = 0; s < t->steps; s++) {
+            const struct track_point *p = track_at(t, s, 2 * k), *q = track_at(t, s, 2 * k + 1);
+            const double r[3] = { q->x[0] - p->x[0], q->x[1] - p->x[1], q->x[2] - p->x[2] };
+            own += norm(r) < touching ? 1.0 / (double)t->steps : 0.0;
+        }
+        sum += own;
+        squares += k ? 0.5 * gsl_pow_2(own - last) : 0.0;
+        last = own;
+    }
+    return (struct share){ sum / (double)pairs, sqrt(squares * (double)pairs / (double)(pairs - 1)) / (double)pairs };
+}
+
+static void judge(struct check_run *run, const struct shell *s, const struct track *track)
+{
+    const double exact = contact_share(s, false), seen = 5.9;   /* standard deviations: 3.9 to alarm, 2 to be sure */
+    const struct share share = measure(track, 2.0 * s->radius);
+    const double ratio = share.mean / exact, error = share.error / exact, pairs = (double)track->count / 2.0;
+    const double effective = exact * (1.0 - exact) / gsl_pow_2(share.error);
+    struct result *r;
+    if (json_is_true(json_object_get(run->gate_case->parameters, "predicted"))) {
+        const double expected = contact_share(s, true) / exact;
+        r = check_interval(run, MODEL, "depletion of contacts at a large step", ratio, error, expected, run->gate_case->tolerance,
+                           "pairs in contact are %.4g +- %.2g of Boltzmann's number, where velocity Verlet with half-step velocities has 1 - eps/2 = "
+                           "%.4g at eps = %.3g", ratio, error, expected, s->eps);
+    } else {
+        const double outside = ratio > 1.0 ? ratio - 1.0 : fmax(0.0, 1.0 - 0.5 * s->eps - ratio);
+        r = check_p(run, INVARIANT, "pairs in contact", ratio, 1.0, statistics_normal_p(outside / error), 0.5 * s->eps + seen * error,
+                    scene_number(run->gate_case->parameters, "declared.contact", NAN),
+                    "pairs in contact are %.4g +- %.2g of Boltzmann's number: friction and noise push pairs %s; noise taken at another place "
+                    "than friction, or a step that is too large, does that", ratio, error, ratio < 1.0 ? "apart" : "together");
+    }
+    result_notes(r, "%.0f pairs, %.4g of them in contact; worth %.0f independent samples; eps = X_A dt/m_eff = %.3g", pairs, share.mean,
+                 effective, s->eps);
+}
+
+void check_boltzmann(struct check_run *run)
+{
+    const json_t *parameters = run->gate_case->parameters;
+    const size_t pairs = (size_t)run->samples * (size_t)scene_number(parameters, "pairs", 0), across = (size_t)ceil(cbrt((double)pairs));
+    const double spacing = scene_number(parameters, "spacing", NAN);
+    json_t *scene = json_deep_copy(run->gate_case->scene);
+    struct shell *s = calloc(1, sizeof *s);
+    if (s && shell_make(run, scene, s)) {
+        double list[64];
+        int at[64];
+        size_t times;
+        parameter_list(parameters, "at", list, &times, 64);
+        for (size_t t = 0; t < times; t++)
+            at[t] = (int)list[t];
+        scene_set(scene, "seed", json_integer(run->seed));
+        scene_set(scene, "dynamics.verlet.dt", json_real(s->eps * 0.5 * s->mass / friction_at(s, 0.0)));
+        const double edge = spacing * (double)across;
+        scene_set(scene, "box.lengths", json_pack("[fff]", edge, edge, edge));
+        struct state_row *start = start_pairs(run, s, pairs, spacing, across);
+        struct track track;
+        if (track_ask(run, "pairs", scene, start, 2 * pairs, at, times, &track)) {
+            judge(run, s, &track);
+            track_free(&track);
+        }
+        free(start);
+    }
+    free(s);
+    json_decref(scene);
+}
