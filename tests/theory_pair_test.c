@@ -131,11 +131,24 @@ static void friction_keeps_momenta_and_takes_energy(void)
     check_true(touched && slid, "the pair has touched and slid");
 }
 
+/* Virial coefficients 4, 10 (exact) and 18.365 (which the formula rounds to 18); the diameter by the midpoint rule. */
+static void hard_spheres_have_their_virials(void)
+{
+    const double phi = 1e-3, z = theory_carnahan_starling(phi);
+    check_close(z, 1.0 + 4.0 * phi + 10.0 * phi * phi + 18.0 * phi * phi * phi, 30.0 * pow(phi, 4), "virial series");
+    double sigma = 0.0;
+    const double kT = 0.31, k_n = 400.0, step = 1e-4;
+    for (double r = 0.5 * step; r < 2.6; r += step)
+        sigma += step * (1.0 - exp(-0.5 * k_n * (2.6 - r) * (2.6 - r) / kT));
+    check_close(theory_thermal_diameter(1.3, k_n, kT), sigma, 1e-7, "thermal diameter");
+}
+
 static const struct unit_test tests[] = {
     { "integral of the squeezing resistance: closed form and quadrature", squeeze_integral_is_the_quadrature },
     { "head-on approach: closed form, momentum", squeezing_in_time_is_the_closed_form },
     { "two spheres far apart are free", far_apart_each_is_free },
     { "oblique collision: momenta, energy, cap", friction_keeps_momenta_and_takes_energy },
+    { "hard spheres: virial coefficients, thermal diameter", hard_spheres_have_their_virials },
     { NULL, NULL },
 };
 

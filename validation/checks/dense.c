@@ -258,5 +258,6 @@ void dense_equivalence(struct check_run *run)
 const struct check dense_checks[] = {
     { "dense-equivalence", dense_equivalence },
     { "dense-path", dense_path },
+    { "equation-of-state", check_equation_of_state },
     { NULL, NULL },
 };

@@ -109,16 +109,16 @@ static void judge(struct check_run *run, const char *label, const struct sample 
     /* each velocity across with both spins that it is coupled to, (n x W).U: s with t and t with s, opposite signs */
     static const size_t couple[][2] = { { 1, 8 }, { 2, 7 }, { 1, 11 }, { 2, 10 }, { 4, 8 }, { 5, 7 }, { 4, 11 }, { 5, 10 } };
     static const double plus[] = { 1, 1 }, turned[] = { 1, -1, 1, -1, -1, 1, -1, 1 };
+    judge_product(run, label, s, roll, plus, 2, "<W_1.W_2> across n", ": the torque noise on j has a plus where the balance needs a minus, "
+                                                                       "or an index is wrong");
+    judge_product(run, label, s, squeeze, plus, 1, "<U_1.U_2> along n", "");
+    judge_product(run, label, s, slide, plus, 2, "<U_1.U_2> across n", "");
+    judge_product(run, label, s, twist, plus, 1, "<W_1.W_2> along n", "");
+    judge_product(run, label, s, couple, turned, 8, "<U x W> across n", "");
     judge_temperature(run, label, s, 0, true, "translation along n");
     judge_temperature(run, label, s, 0, false, "translation across n");
     judge_temperature(run, label, s, 6, true, "spin about n");
     judge_temperature(run, label, s, 6, false, "spin across n");
-    judge_product(run, label, s, squeeze, plus, 1, "<U_1.U_2> along n", "");
-    judge_product(run, label, s, slide, plus, 2, "<U_1.U_2> across n", "");
-    judge_product(run, label, s, roll, plus, 2, "<W_1.W_2> across n", ": the torque noise on j has a plus where the balance needs a minus, "
-                                                                       "or an index is wrong");
-    judge_product(run, label, s, twist, plus, 1, "<W_1.W_2> along n", "");
-    judge_product(run, label, s, couple, turned, 8, "<U x W> across n", "");
     char name[128];
     snprintf(name, sizeof name, "%s: all 78 second moments", label);
     check_p(run, INVARIANT, name, NAN, NAN, statistics_identity_p(s->z, s->rows, NUMBERS), NAN, NAN,

@@ -85,4 +85,8 @@ bool theory_pair_motion(const struct theory_motion *m, double duration, double t
 /* The integral of X_A over the gap h from `from` to `to`: momentum that squeezing takes from a pair, in closed form. */
 double theory_squeeze_integral(const struct theory_lubrication *law, double a1, double a2, double from, double to);
 
+/* Equal spheres at equilibrium: P/(n kT) of the hard-sphere fluid, and the diameter of spheres with the contact k_n (hard_spheres.c). */
+double theory_carnahan_starling(double phi);
+double theory_thermal_diameter(double radius, double stiffness, double kT);
+
 #endif
