@@ -14,12 +14,13 @@
  * stratified order start at nearly the same gap, so half their mean square difference is the variance (a little too
  * large). What matters of a sample is sum over pairs, hence normal.
  *
- * Judged: the mean nearness against Boltzmann's; null band 1 - eps/2 to 1, since an explicit scheme may have its bias, which is small at
+ * Judged: the mean nearness, and, less sharply, the share in contact, against Boltzmann's; null band 1 - eps/2 to 1, since an explicit scheme may have its bias, which is small at
  * the step of the case. What is not asked: the depletion at a large step. It takes long to build up, and by then a shell leaks.
  */
 #include "statistics.h"
 #include "two_bodies.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -56,7 +57,7 @@ static bool shell_make(struct check_run *run, const json_t *scene, struct shell 
     s->stiffness = s->m.contact.normal_stiffness;
     s->kT = scene_number(scene, "fluid.kT", NAN);
     s->eps = scene_number(run->gate_case->parameters, "eps", NAN);
-    s->low = -7.0 * sqrt(s->kT / s->stiffness);
+    s->low = -7.0 * sqrt(s->kT / s->stiffness);     /* a weight of e^-24 lies beyond */
     s->high = scene_number(run->gate_case->parameters, "shell", NAN);
     s->width = (s->high - s->low) / CELLS;
     for (int k = 0; k < CELLS; k++)
@@ -74,13 +75,18 @@ static double nearness(const struct shell *s, double h)
     return fmax(0.0, (friction_at(s, h) - none) / (friction_at(s, 0.0) - none));
 }
 
-/* Mean nearness of the shell's pairs. */
-static double mean_nearness(const struct shell *s)
+static double in_contact(const struct shell *s, double h)
+{
+    (void)s;
+    return h < 0.0 ? 1.0 : 0.0;
+}
+
+static double mean_over_shell(const struct shell *s, double (*of)(const struct shell *, double))
 {
     double sum = 0.0;
     for (int k = 0; k < CELLS; k++) {
         const double h = s->low + (k + 0.5) * s->width;
-        sum += nearness(s, h) * boltzmann(s, h);
+        sum += of(s, h) * boltzmann(s, h);
     }
     return sum / s->weight[CELLS];
 }
@@ -120,41 +126,57 @@ static struct state_row *start_pairs(struct check_run *run, const struct shell *
     return row;
 }
 
-struct share { double mean, error, contact; };
+struct share { double mean, error; };
 
-static struct share measure(const struct shell *shell, const struct track *t)
+/* Mean over pairs of a number of each, and its error from neighbours in the stratified order. */
+static struct share mean_of(const double *own, size_t pairs)
 {
-    double sum = 0.0, squares = 0.0, last = 0.0, contact = 0.0;
-    const size_t pairs = t->count / 2;
+    double sum = 0.0, squares = 0.0;
     for (size_t k = 0; k < pairs; k++) {
-        double own = 0.0;
-        for (size_t s = 0; s < t->steps; s++) {
-            const struct track_point *p = track_at(t, s, 2 * k), *q = track_at(t, s, 2 * k + 1);
-            const double r[3] = { q->x[0] - p->x[0], q->x[1] - p->x[1], q->x[2] - p->x[2] };
-            const double h = norm(r) - 2.0 * shell->radius;
-            own += nearness(shell, h) / (double)t->steps;
-            contact += h < 0.0 ? 1.0 / (double)t->steps : 0.0;
-        }
-        sum += own;
-        squares += k ? 0.5 * gsl_pow_2(own - last) : 0.0;
-        last = own;
+        sum += own[k];
+        squares += k ? 0.5 * gsl_pow_2(own[k] - own[k - 1]) : 0.0;
     }
-    return (struct share){ sum / (double)pairs, sqrt(squares * (double)pairs / (double)(pairs - 1)) / (double)pairs, contact / (double)pairs };
+    const double n = (double)pairs;
+    return (struct share){ sum / n, sqrt(squares * n / (n - 1.0)) / n };
 }
 
-static void judge(struct check_run *run, const struct shell *s, const struct track *track)
+static void judge(struct check_run *run, const struct shell *s, const char *what, const char *key, const double *own, size_t pairs,
+                  double exact)
 {
-    const double exact = mean_nearness(s), seen = 5.9;   /* standard deviations: 3.9 to alarm, 2 to be sure */
-    const struct share share = measure(s, track);
-    const double ratio = share.mean / exact, error = share.error / exact, pairs = (double)track->count / 2.0;
-    const double effective = exact * (1.0 - exact) / gsl_pow_2(share.error);
+    const double seen = 5.9;   /* standard deviations: 3.9 to alarm, 2 to be sure */
+    const struct share share = mean_of(own, pairs);
+    char path[64], name[64];
+    snprintf(path, sizeof path, "declared.%s", key);
+    snprintf(name, sizeof name, "pairs %s", what);
+    const double ratio = share.mean / exact, error = share.error / exact;
     const double outside = ratio > 1.0 ? ratio - 1.0 : fmax(0.0, 1.0 - 0.5 * s->eps - ratio);
-    struct result *r = check_p(run, INVARIANT, "pairs near contact", ratio, 1.0, statistics_normal_p(outside / error), 0.5 * s->eps + seen * error,
-                               scene_number(run->gate_case->parameters, "declared.contact", NAN),
-                               "pairs near contact are %.4g +- %.2g of Boltzmann's number: friction and noise push pairs %s; noise taken at another "
-                               "place than friction, or a step that is too large, does that", ratio, error, ratio < 1.0 ? "apart" : "together");
-    result_notes(r, "%.0f pairs, %.4g of them in contact; error as of %.0f independent looks at a contact of this share; eps = X_A dt/m_eff = %.3g",
-                 pairs, share.contact, effective, s->eps);
+    struct result *r = check_p(run, INVARIANT, name, ratio, 1.0, statistics_normal_p(outside / error), 0.5 * s->eps + seen * error,
+                               scene_number(run->gate_case->parameters, path, NAN),
+                               "pairs %s are %.4g +- %.2g of Boltzmann's number: friction and noise push pairs %s; a wrong temperature of the "
+                               "contact, noise taken at another place than friction, or a step that is too large does that", what, ratio, error,
+                               ratio < 1.0 ? "apart" : "together");
+    result_notes(r, "%zu pairs, mean %.4g; error as of %.0f independent looks at something that is so often there; eps = X_A dt/m_eff = %.3g", pairs,
+                 share.mean, exact * (1.0 - exact) / gsl_pow_2(share.error), s->eps);
+}
+
+/* Per pair the time averages of how near it is and of being in contact. */
+static void measure(struct check_run *run, const struct shell *s, const struct track *t)
+{
+    const size_t pairs = t->count / 2;
+    double *near = calloc(pairs, sizeof *near), *touching = calloc(pairs, sizeof *touching);
+    for (size_t k = 0; near && touching && k < pairs; k++)
+        for (size_t step = 0; step < t->steps; step++) {
+            const struct track_point *p = track_at(t, step, 2 * k), *q = track_at(t, step, 2 * k + 1);
+            const double r[3] = { q->x[0] - p->x[0], q->x[1] - p->x[1], q->x[2] - p->x[2] }, h = norm(r) - 2.0 * s->radius;
+            near[k] += nearness(s, h) / (double)t->steps;
+            touching[k] += in_contact(s, h) / (double)t->steps;
+        }
+    if (near && touching) {
+        judge(run, s, "near contact", "near", near, pairs, mean_over_shell(s, nearness));
+        judge(run, s, "in contact", "contact", touching, pairs, mean_over_shell(s, in_contact));
+    }
+    free(near);
+    free(touching);
 }
 
 void check_boltzmann(struct check_run *run)
@@ -178,7 +200,7 @@ void check_boltzmann(struct check_run *run)
         struct state_row *start = start_pairs(run, s, pairs, spacing, across);
         struct track track;
         if (track_ask(run, "pairs", scene, start, 2 * pairs, at, times, &track)) {
-            judge(run, s, &track);
+            measure(run, s, &track);
             track_free(&track);
         }
         free(start);
