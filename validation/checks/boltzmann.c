@@ -179,6 +179,44 @@ static void measure(struct check_run *run, const struct shell *s, const struct t
     free(touching);
 }
 
+/* Potential of mean force -ln(share of a bin/its share of r^2 dr), in kT, with the line of the spring. For people. */
+static void draw(struct check_run *run, const struct shell *s, const struct track *t)
+{
+    enum { BINS = 40 };
+    double found[BINS] = { 0 }, flat[BINS] = { 0 };
+    char path[PATH_LENGTH], command[PATH_LENGTH + 64];
+    const size_t pairs = t->count / 2, last = t->steps - 1;
+    const double low = s->low / 2.0, width = (0.75 * s->high - low) / BINS;
+    for (size_t k = 0; k < pairs; k++) {
+        const struct track_point *p = track_at(t, last, 2 * k), *q = track_at(t, last, 2 * k + 1);
+        const double r[3] = { q->x[0] - p->x[0], q->x[1] - p->x[1], q->x[2] - p->x[2] };
+        const double bin = floor((norm(r) - 2.0 * s->radius - low) / width);
+        if (bin >= 0 && bin < BINS)
+            found[(int)bin] += 1.0;
+    }
+    for (int b = 0; b < BINS; b++)
+        flat[b] = gsl_pow_2(2.0 * s->radius + low + (b + 0.5) * width) * width / s->width / s->weight[CELLS];
+    path_join(path, run->work, "pmf.dat");
+    FILE *f = fopen(path, "w");
+    if (!f)
+        return;
+    for (int b = 0; b < BINS; b++)
+        if (found[b] > 0)
+            fprintf(f, "%g %g %g\n", low + (b + 0.5) * width, -log(found[b] / ((double)pairs * flat[b])), 1.0 / sqrt(found[b]));
+    fclose(f);
+    path_join(path, run->work, "pmf.gnuplot");
+    f = fopen(path, "w");
+    if (!f)
+        return;
+    fprintf(f, "set terminal svg size 640,400 enhanced font 'sans,12'\nset output 'pmf.svg'\nset xlabel 'gap'\nset ylabel 'potential of mean force / kT'\n"
+               "plot [%g:%g] (x < 0 ? %g*x*x : 0) with lines title 'spring', 'pmf.dat' with yerrorbars pt 7 ps 0.6 title 'candidate'\n",
+            low, 0.75 * s->high, 0.5 * s->stiffness / s->kT);
+    fclose(f);
+    snprintf(command, sizeof command, "cd '%s' && gnuplot pmf.gnuplot 2>gnuplot.log", run->work);
+    if (system(command) == 0 && run->results.count > 0)
+        result_picture(&run->results.item[0], "pmf.svg");
+}
+
 void check_boltzmann(struct check_run *run)
 {
     const json_t *parameters = run->gate_case->parameters;
@@ -201,6 +239,7 @@ void check_boltzmann(struct check_run *run)
         struct track track;
         if (track_ask(run, "pairs", scene, start, 2 * pairs, at, times, &track)) {
             measure(run, s, &track);
+            draw(run, s, &track);
             track_free(&track);
         }
         free(start);
