@@ -8,14 +8,14 @@
  * rarer there by 1 - eps/2 (a spurious repulsion). Noise of the wrong size or friction taken elsewhere than its noise do the same.
  *
  * Waiting for a pair to sample its potential takes a million steps. Instead thousands of pairs, each alone, start from the exact
- * distribution in a thin shell h < H, stratified, with Maxwell velocities; then nothing may change. Pairs from beyond the shell
- * would arrive in the near zone only if they crossed H in the time of the run, so the shell is given so thick that they cannot.
- * Per pair the time average of how near it is to contact (1 in contact, less outside) is one number; pairs are independent; neighbours in the
- * stratified order start at nearly the same gap, so half their mean square difference is the variance (a little too
- * large). What matters of a sample is sum over pairs, hence normal.
+ * distribution in a thin shell h < H, stratified, with Maxwell velocities; then nothing may change near contact. (At the edge the
+ * shell loses pairs and gets none back; it is so thick that this does not reach the near zone in the time of the run.) Per pair the
+ * time average of how near it is to contact, 1 in contact and less outside, is one number. Pairs are independent; neighbours in the
+ * stratified order start at nearly the same gap, so half their mean square difference is the variance (a little too large).
  *
- * Judged: the mean nearness, and, less sharply, the share in contact, against Boltzmann's; null band 1 - eps/2 to 1, since an explicit scheme may have its bias, which is small at
- * the step of the case. What is not asked: the depletion at a large step. It takes long to build up, and by then a shell leaks.
+ * Judged: the mean nearness, and, less sharply, the share in contact, against Boltzmann's. The null band is 1 - eps/2 to 1, since an
+ * explicit scheme may have its bias, which is small at the step of the case. What is not asked: the depletion at a large step. It takes
+ * long to build up, and by then a shell leaks.
  */
 #include "statistics.h"
 #include "two_bodies.h"
@@ -156,8 +156,8 @@ static void judge(struct check_run *run, const struct shell *s, const char *what
                                "pairs %s are %.4g +- %.2g of Boltzmann's number: friction and noise push pairs %s; a wrong temperature of the "
                                "contact, noise taken at another place than friction, or a step that is too large does that", what, ratio, error,
                                ratio < 1.0 ? "apart" : "together");
-    result_notes(r, "%zu pairs, mean %.4g; error as of %.0f independent looks at something that is so often there; eps = X_A dt/m_eff = %.3g", pairs,
-                 share.mean, exact * (1.0 - exact) / gsl_pow_2(share.error), s->eps);
+    result_notes(r, "%zu pairs, mean %.4g; error as of %.0f independent looks at something that is so often there; eps = X_A dt/m_eff = %.3g",
+                 pairs, share.mean, exact * (1.0 - exact) / gsl_pow_2(share.error), s->eps);
 }
 
 /* Per pair the time averages of how near it is and of being in contact. */

@@ -218,5 +218,7 @@ void bodies_picture(struct check_run *run, const struct comparison *c, const str
         result_picture(&run->results.item[0], "gaps.svg");
 }
 
-const struct check two_bodies_checks[] = { { "approach", check_approach }, { "encounter", check_encounter }, { "boltzmann", check_boltzmann },
-                                          { "equipartition", check_equipartition }, { "metamorphic", check_metamorphic }, { NULL, NULL } };
+const struct check two_bodies_checks[] = {
+    { "approach", check_approach },   { "encounter", check_encounter },       { "boltzmann", check_boltzmann },
+    { "equipartition", check_equipartition }, { "metamorphic", check_metamorphic }, { NULL, NULL },
+};
