@@ -11,11 +11,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-extern const struct suite box_suite, packing_suite, dynamics_suite, force_suite, scene_suite, theory_suite, theory_motion_suite, statistics_suite, tables_suite,
-    gate_suite;
+#define SUITES(each)                                                                                                     \
+    each(box) each(packing) each(dynamics) each(force) each(scene) each(theory) each(theory_motion) each(theory_pair)    \
+    each(statistics) each(tables) each(gate)
+#define DECLARE(name) extern const struct suite name##_suite;
+#define ADDRESS(name) &name##_suite,
 
-static const struct suite *const suites[] = { &box_suite, &packing_suite, &dynamics_suite, &force_suite, &scene_suite, &theory_suite, &theory_motion_suite,
-                                              &statistics_suite, &tables_suite, &gate_suite };
+SUITES(DECLARE)
+static const struct suite *const suites[] = { SUITES(ADDRESS) };
 
 void check_close(double measured, double expected, double tolerance, const char *what)
 {

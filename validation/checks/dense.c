@@ -259,5 +259,6 @@ const struct check dense_checks[] = {
     { "dense-equivalence", dense_equivalence },
     { "dense-path", dense_path },
     { "dense-memory", dense_memory },
+    { "equation-of-state", check_equation_of_state },
     { NULL, NULL },
 };

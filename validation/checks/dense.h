@@ -24,5 +24,6 @@ bool dense_ask_both(struct check_run *run, const char *name, const struct dense_
 void dense_equivalence(struct check_run *run);
 void dense_path(struct check_run *run);
 void dense_memory(struct check_run *run);
+void check_equation_of_state(struct check_run *run);
 
 #endif

@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 struct free_sphere free_sphere(const struct model *m)
 {
@@ -72,7 +73,10 @@ bool track_ask(struct check_run *run, const char *name, json_t *scene, const str
         json_array_append_new(list, json_integer(at[k]));
     scene_set(scene, "start.file", json_string("states.csv"));
     scene_set(scene, "run", json_pack("{si}", "steps", at[steps - 1]));
-    scene_set(scene, "output", json_pack("{s{so sb}}", "states", "at", list, "turn", 1));
+    scene_set(scene, "output.states", json_pack("{so}", "at", list));
+    const char *rotation = json_string_value(scene_get(scene, "dynamics.verlet.rotation"));
+    if (rotation && strcmp(rotation, "on") == 0)
+        scene_set(scene, "output.states.turn", json_true());
     const struct question q = { .protocol = "run", .scene = scene, .state = start, .states = count };
     char out[PATH_LENGTH], path[PATH_LENGTH], why[WHY_LENGTH];
     if (!check_ask(run, name, &q, out))

@@ -13,7 +13,7 @@ struct track { size_t steps, count; struct track_point *point; /* [step asked fo
 
 /*
  * Run `scene` from these states for at[steps - 1] steps and read the spheres at each step of `at` (ascending). The scene gets its
- * run and output from here. False: recorded already.
+ * run and output from here, with the angles turned through where it says that spheres turn. False: recorded already.
  */
 bool track_ask(struct check_run *run, const char *name, json_t *scene, const struct state_row *start, size_t count, const int *at,
                size_t steps, struct track *t);

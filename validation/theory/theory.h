@@ -69,4 +69,24 @@ double theory_phi2_coefficient(double inner_gap, double outer_gap, double *error
 void theory_crowd_stress(const struct theory_lubrication *law, int count, const struct theory_sphere *s,
                          const double cell[3][3] /* rows A B C */, const double G[3][3], double stress[3][3]);
 
+/* Two spheres in time: theory/pair_motion.c. Null laws: the force is not there. */
+struct theory_motion {
+    double radius[2], density[2];
+    const struct theory_lubrication *lubrication;
+    const struct theory_contact *contact;
+    bool drag, drag_torque;
+    double viscosity, gradient[3][3];       /* of the drag and of the flow U_inf = G x */
+    double applied[2][3];                   /* constant forces */
+};
+struct theory_pair_state { struct theory_sphere s[2]; double history[3]; /* of surface 1 against 2 */ };
+double theory_sphere_mass(const struct theory_motion *m, int which);
+/* Carry `p` on by `duration` to this relative accuracy per step (1e-12). False: the solution did not get there. */
+bool theory_pair_motion(const struct theory_motion *m, double duration, double tolerance, struct theory_pair_state *p);
+/* The integral of X_A over the gap h from `from` to `to`: momentum that squeezing takes from a pair, in closed form. */
+double theory_squeeze_integral(const struct theory_lubrication *law, double a1, double a2, double from, double to);
+
+/* Equal spheres at equilibrium: P/(n kT) of the hard-sphere fluid, and the diameter of spheres with the contact k_n (hard_spheres.c). */
+double theory_carnahan_starling(double phi);
+double theory_thermal_diameter(double radius, double stiffness, double kT);
+
 #endif

@@ -1,0 +1,107 @@
+/*
+ * Layer 6: pressure of Brownian spheres at rest
+ *
+ *     - tr(contact stress)/3 = n kT (Z(phi') - 1) ,   phi' = (pi/6) n sigma^3 ,   Z of Carnahan & Starling, sigma the thermal diameter
+ *
+ * (theory/hard_spheres.c). Equilibrium knows nothing of friction with the fluid, so this holds whatever the drag; it sees the sum of
+ * everything: neighbour lists, images, the factor of the pair stress, the temperature that the contacts feel.
+ *
+ * Independent realisations, each from spheres placed at random without overlap with Maxwell velocities: collisions make an
+ * equilibrium of that in some tens of collision times, which are discarded. One number per realisation, so that the standard
+ * error needs no correlation time. The formula itself is good to 0.3 % below phi 0.45, the soft diameter to the square of its
+ * correction; a realisation of N spheres has a pressure wrong by order 1/N.
+ */
+#include "dense.h"
+#include "packing.h"
+#include "pair.h"
+#include "single.h"
+#include "statistics.h"
+
+#include <stdlib.h>
+
+/* Mean of - tr(contact)/3 after `discard` steps; NaN after recording what is wrong. */
+static double mean_pressure(struct check_run *run, const char *out, double discard)
+{
+    char path[PATH_LENGTH], why[WHY_LENGTH];
+    struct table t;
+    path_join(path, out, "stress.csv");
+    if (!table_read(path, "step,contact_normal_xx,contact_normal_yy,contact_normal_zz", &t, why)) {
+        check_garbage(run, why);
+        return NAN;
+    }
+    double sum = 0.0, rows = 0.0;
+    for (size_t r = 0; r < t.rows; r++)
+        if (table_at(&t, r, 0) > discard) {
+            sum -= (table_at(&t, r, 1) + table_at(&t, r, 2) + table_at(&t, r, 3)) / 3.0;
+            rows += 1.0;
+        }
+    table_free(&t);
+    if (rows == 0.0)
+        check_garbage(run, "stress.csv ends before the transient does");
+    return rows > 0.0 ? sum / rows : NAN;
+}
+
+static struct state_row *start_spheres(struct check_run *run, const struct model *m, int count, double edge, double kT, unsigned seed)
+{
+    const struct packing_species kind = { m->radius[0], count };
+    const struct free_sphere sphere = free_sphere(m);
+    struct state_row *row = calloc((size_t)count, sizeof *row);
+    char why[WHY_LENGTH] = "the gate is out of memory";
+    if (!row || !packing_make(&kind, 1, edge, 0.0, seed, row, why)) {
+        check_garbage(run, why);
+        free(row);
+        return NULL;
+    }
+    gsl_rng *random = pair_random(run);
+    gsl_rng_set(random, seed);
+    for (int i = 0; i < count; i++)
+        random_vector(random, sqrt(kT / sphere.mass), row[i].u);
+    gsl_rng_free(random);
+    return row;
+}
+
+void check_equation_of_state(struct check_run *run)
+{
+    const json_t *parameters = run->gate_case->parameters;
+    const int count = (int)scene_number(parameters, "spheres", 0), realisations = (int)scene_number(parameters, "realisations", 0);
+    const double phi = scene_number(parameters, "phi", NAN), steps = scene_number(parameters, "steps", NAN);
+    struct model m;
+    double pressure[64];
+    int answered = 0;
+    if (!model_read(run, run->gate_case->scene, &m) || realisations < 2 || realisations > 64)
+        return;
+    const struct packing_species kind = { m.radius[0], count };
+    const double edge = packing_edge(&kind, 1, phi), kT = scene_number(run->gate_case->scene, "fluid.kT", NAN);
+    for (int k = 0; k < realisations; k++) {
+        json_t *scene = json_deep_copy(run->gate_case->scene);
+        const unsigned seed = (run->seed + (unsigned)k) & 0xffffffffu;
+        struct state_row *row = start_spheres(run, &m, count, edge, kT, seed);
+        char name[32], out[PATH_LENGTH];
+        snprintf(name, sizeof name, "realisation-%d", k);
+        check_progress(run, "realisation %d of %d", k + 1, realisations);
+        scene_set(scene, "seed", json_integer(seed));
+        scene_set(scene, "box.lengths", json_pack("[fff]", edge, edge, edge));
+        scene_set(scene, "start.file", json_string("states.csv"));
+        scene_set(scene, "run.steps", json_integer((json_int_t)steps));
+        scene_set(scene, "output.stress.every", json_integer((json_int_t)scene_number(parameters, "every", 1)));
+        const struct question q = { .protocol = "run", .scene = scene, .state = row, .states = (size_t)count };
+        if (row && check_ask(run, name, &q, out)) {
+            pressure[k] = mean_pressure(run, out, scene_number(parameters, "discard", 0));
+            answered += isfinite(pressure[k]);
+        }
+        free(row);
+        json_decref(scene);
+        if (answered <= k)
+            return;
+    }
+    double mean;
+    const double n = count / gsl_pow_3(edge), sigma = theory_thermal_diameter(m.radius[0], m.contact.normal_stiffness, kT);
+    const struct interval one = statistics_mean_interval(pressure, (size_t)realisations, 0.682689, &mean);   /* one standard error */
+    const double expected = theory_carnahan_starling(M_PI / 6.0 * n * gsl_pow_3(sigma)) - 1.0, measured = mean / (n * kT);
+    struct result *r = check_interval(run, MODEL, "contact pressure", measured, 0.5 * (one.high - one.low) / (n * kT), expected,
+                                      run->gate_case->tolerance * expected,
+                                      "the contact pressure at rest is %.4g n kT; Carnahan and Starling give %.4g at the thermal diameter %.4g", measured,
+                                      expected, sigma);
+    result_notes(r, "%d realisations of %d spheres at phi %.3g (%.4g with the thermal diameter): %.4g +- %.2g", realisations, count, phi,
+                 M_PI / 6.0 * n * gsl_pow_3(sigma), measured, 0.5 * (one.high - one.low) / (n * kT));
+}

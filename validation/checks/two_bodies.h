@@ -1,0 +1,47 @@
+/*
+ * Layer 4, shared parts: pairs of spheres, each pair alone in a box of its own stretch, run by the candidate at three steps and solved
+ * by theory/pair_motion.c.
+ */
+#ifndef TWO_BODIES_H
+#define TWO_BODIES_H
+
+#include "single.h"
+
+enum { REFINEMENTS = 3 };       /* dt, dt/2, dt/4 */
+
+/* Pairs at places of their own; `start` is relative to the pair's origin. */
+struct bodies { size_t pairs; struct theory_motion *motion; struct theory_pair_state *start; double (*origin)[3]; };
+bool bodies_make(struct bodies *b, size_t pairs);
+void bodies_free(struct bodies *b);
+/* The forces that the scene declares; the laws live in the model, which must outlive it. */
+struct theory_motion bodies_motion(const struct model *m, double radius_1, double radius_2);
+
+/* Errors of one kind of quantity: at each step, between successive steps, and of the value extrapolated to dt = 0. */
+struct convergence { const char *name; double at[REFINEMENTS]; struct worst extrapolated; };
+enum { PLACE, VELOCITY, SPIN, GAP, QUANTITIES };
+
+struct comparison {
+    struct convergence of[QUANTITIES];
+    size_t times;
+    double *time, *gap, *gap_expected;      /* [time][pair]: of the finest run */
+    struct theory_pair_state *expected;     /* [time][pair] */
+    struct track track[REFINEMENTS];
+};
+/*
+ * Run `scene` for the steps in `at` (of size dt; at dt/2 twice as many) and compare. `speed` is what velocities are measured
+ * against. `orders`: powers of dt to extrapolate away, 1 (once) or 2 (dt and dt^2). False: recorded already.
+ */
+bool bodies_compare(struct check_run *run, const char *name, json_t *scene, const struct bodies *b, double dt, const int *at, size_t times,
+                    double speed, int orders, struct comparison *c);
+void comparison_free(struct comparison *c);
+/* Results: errors at dt within `coarse`, halving with it, and the extrapolated values within the tolerance of the case. */
+void bodies_judge(struct check_run *run, const char *label, const struct comparison *c, const struct bodies *b, double coarse);
+void bodies_picture(struct check_run *run, const struct comparison *c, const struct bodies *b, const char *title);
+
+void check_encounter(struct check_run *run);
+void check_approach(struct check_run *run);
+void check_equipartition(struct check_run *run);
+void check_boltzmann(struct check_run *run);
+void check_metamorphic(struct check_run *run);
+
+#endif
