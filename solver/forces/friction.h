@@ -13,7 +13,8 @@
  *
  * Where there is no friction the contact has no history either: it starts from zero when friction comes back.
  * With N_c = 0 critical, soft and shifted are plain to the last bit.
- * Source: critical load: Seto et al. (2013), Mari et al. (2014); shifted: the critical-load model of the same authors.
+ * Source: Seto et al. (2013), Mari et al. (2014), models of shear thickening by friction that begins at a load; shifted is the form in
+ * which the critical load is subtracted.
  */
 #ifndef FORCES_FRICTION_H
 #define FORCES_FRICTION_H

@@ -4,7 +4,7 @@
  *     x(t) = x(0) + U(0) sin(w t)/w,   U(t) = U(0) cos(w t),   w = sqrt(k/m),   k by species; without a tether it flies on
  *
  * The swing is as wide as the cell, so that spheres cross its faces, and the tether must not notice. A scheme of second order is
- * late by the share (w dt)^2/24 of its phase; allowed is four times that, (w dt)^2/6 per radian.
+ * wrong by (w dt)^2/24 of its phase and (w dt)^2/8 of its swing; allowed is (w dt)^2/6 of (phase + 1).
  */
 #include "single.h"
 
@@ -47,7 +47,7 @@ void check_tether(struct check_run *run)
         for (size_t i = 0; i < SPHERES; i++) {
             const size_t kind = i % m.species;
             const double w = sqrt(stiffness_of(scene, kind) / (4.0 / 3.0 * M_PI * m.density[kind] * pow(m.radius[kind], 3))), t = at[s] * dt;
-            const double late = w * w * w * t * dt * dt / 6.0 + 1e-11, speed = norm(start[i].u);
+            const double late = w * w * dt * dt / 6.0 * (w * t + 1.0) + 1e-11, speed = norm(start[i].u);
             for (int k = 0; k < 3; k++) {
                 const double swing = w > 0 ? sin(w * t) / w : t;
                 worst_see(&place, track_at(&track, s, i)->x[k], start[i].x[k] + swing * start[i].u[k], late * speed * (w > 0 ? 1 / w : t), i);
