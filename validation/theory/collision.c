@@ -101,8 +101,10 @@ static int motion(double t, const double y[], double rate[], void *p)
             rate[SPHERE * a + U + k] = f.force[a][k] / mass;
             rate[SPHERE * a + W + k] = f.torque[a][k] / inertia;
         }
+    /* Without friction there is no history; it begins at zero, for a load that falls below the critical one does not come back here. */
+    const bool grips = theory_contact_grips(c->law, overlap_of(c, y), opening);
     for (int k = 0; k < 3; k++)
-        rate[HISTORY + k] = slip[k] - along * n[k] - turn * n[k];
+        rate[HISTORY + k] = grips ? slip[k] - along * n[k] - turn * n[k] : 0.0;
     return GSL_SUCCESS;
 }
 

@@ -94,6 +94,22 @@ double theory_friction_cap(const struct theory_contact *law, double load)
     }
 }
 
+/* Normal force of an overlapping pair, and the load that friction feels; opening: dr/dt. */
+static double normal_force(const struct theory_contact *law, double overlap, double opening, double *load)
+{
+    const double spring = law->normal_stiffness * overlap, damped = spring - theory_normal_dashpot(law) * opening;
+    const double normal = law->clip && damped < 0.0 ? 0.0 : damped;
+    *load = law->load == THEORY_LOAD_SPRING ? spring : law->load == THEORY_LOAD_ABSOLUTE ? fabs(normal) : fmax(normal, 0.0);
+    return normal;
+}
+
+bool theory_contact_grips(const struct theory_contact *law, double overlap, double opening)
+{
+    double load;
+    normal_force(law, overlap, opening, &load);
+    return overlap > 0.0 && law->friction > 0.0 && theory_friction_cap(law, load) >= 0.0;
+}
+
 void theory_contact_laws_pair(const struct theory_contact *law, const struct theory_sphere s[2], const double history[3],
                               struct theory_pair *out)
 {
@@ -110,10 +126,8 @@ void theory_contact_laws_pair(const struct theory_contact *law, const struct the
         n[k] /= distance;
         opening += (s[1].u[k] - s[0].u[k]) * n[k];
     }
-    const double spring = law->normal_stiffness * overlap, damped = spring - theory_normal_dashpot(law) * opening;
-    const double normal = law->clip && damped < 0.0 ? 0.0 : damped;
-    const double load = law->load == THEORY_LOAD_SPRING ? spring : law->load == THEORY_LOAD_ABSOLUTE ? fabs(normal) : fmax(normal, 0.0);
-    const double cap = law->friction > 0.0 ? theory_friction_cap(law, load) : -1.0;     /* -1: no friction, no history */
+    double load;
+    const double normal = normal_force(law, overlap, opening, &load), cap = law->friction > 0.0 ? theory_friction_cap(law, load) : -1.0;     /* -1: no friction, no history */
 
     for (int a = 0; a < 2; a++) {
         const double side = a == 0 ? 1.0 : -1.0, lever = law->lever_at_contact ? s[a].radius * distance / touching : s[a].radius;

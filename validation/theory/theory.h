@@ -55,6 +55,7 @@ void theory_contact_pair(const struct theory_contact *law, const struct theory_s
 void theory_contact_laws_pair(const struct theory_contact *law, const struct theory_sphere s[2], const double history[3],
                               struct theory_pair *out);
 double theory_friction_cap(const struct theory_contact *law, double load);
+bool theory_contact_grips(const struct theory_contact *law, double overlap, double opening);  /* is there friction at all */
 double theory_reduced_mass(const struct theory_contact *law);
 double theory_normal_dashpot(const struct theory_contact *law);
 /* Speed ratio of a head-on collision with damping ratio b = zeta/(2 sqrt(m k)), tension allowed or clipped; and back. */
@@ -69,7 +70,7 @@ double theory_repulsion_energy(const struct theory_repulsion *law, double a1, do
 void theory_head_on(const struct theory_contact *law, double *restitution, double *duration);
 /* Tangential impulse of gross sliding over (mu times the closing speed) [M]. */
 double theory_sliding_impulse(const struct theory_contact *law);
-/* Any collision that does not slide, from touch at time 0, integrated to 1e-13 (lever and history as declared). */
+/* Any collision that does not slide, friction being there or not, from touch at time 0, integrated to 1e-13 (lever and history as declared). */
 struct theory_collision { const struct theory_contact *law; struct theory_sphere start[2]; };
 bool theory_collide(struct theory_collision *c, double t, struct theory_sphere now[2]);
 
