@@ -87,6 +87,9 @@ sanitize: ## unit tests and the gate's cases under address and undefined-behavio
 memcheck: all ## valgrind on one run of everything at once
 	@tools/memcheck.sh
 
+scenes: all ## run every sample scene and draw its plot (at most 20 s each)
+	@tools/scenes.sh
+
 faults: all ## each fault of validation/faults/ against the fast tier (ONLY=word for some)
 	@tools/faults.sh
 
@@ -99,5 +102,5 @@ help: ## this list
 clean: ## remove build/
 	rm -rf $B
 
-.PHONY: all setup validate test lines coverage sanitize memcheck faults bench help clean FORCE
+.PHONY: all setup validate test lines coverage sanitize memcheck scenes faults bench help clean FORCE
 -include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS) $(LAMMPS)))

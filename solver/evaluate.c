@@ -109,7 +109,7 @@ static bool evaluate_state(struct simulation *sim, const struct state_file *stat
     }
     stress_clear(&s->stress);
     for (int k = 0; k < s->force_count; k++) {
-        if (s->force[k]->noise)
+        if (s->force[k]->kind == NOISE)
             continue;
         act_alone(s->force[k], s, 0, &s->stress);
         write_forces(forces, state, s->force[k]->name, p, p->force, p->torque);
@@ -161,12 +161,12 @@ static bool evaluate_noise(struct simulation *sim, const struct state_file *stat
     if (!place(s, states, 0, e) || !neighbours_find(&s->neighbours, &s->box, p, &relisted, e))
         return false;
     for (int k = 0; k < s->force_count; k++)            /* the drags leave the resistances that their noises need */
-        if (!s->force[k]->noise)
+        if (s->force[k]->kind != NOISE)
             act_alone(s->force[k], s, 0, NULL);
     for (int k = 0; k < s->force_count && !error_raised(e); k++) {
         char name[80];
         struct table t = { NULL, "" };
-        if (!s->force[k]->noise)
+        if (s->force[k]->kind != NOISE)
             continue;
         snprintf(name, sizeof name, "noise_%s.npy", s->force[k]->name);
         struct destination bare = sim->destination;

@@ -27,7 +27,7 @@ static const struct force_row {
     { "lubrication_noise", lubrication_noise_new, true, NULL },
 };
 
-static const struct dynamics *const dynamics_rows[] = { &verlet };
+static const struct dynamics *const dynamics_rows[] = { &verlet, &predicted_verlet, &split };
 
 static const struct observer_row { const char *key; struct observer *(*make)(struct settings *s, struct suspension *of, struct error *e); }
 observer_rows[] = { { "stress", stress_table_new }, { "states", trajectory_new }, { "dump", dump_new } };
@@ -116,12 +116,19 @@ static bool build_dynamics(struct settings *root, struct simulation *sim, struct
             sim->dynamics = dynamics_rows[k];
             *chosen = settings_child(&dynamics, dynamics_rows[k]->name, e);
         }
+    if (settings_has(&dynamics, "auto")) {      /* noise on lubricated pairs biases explicit schemes: docs/integrators.md */
+        sim->dynamics = sim->suspension.kT > 0.0 && suspension_force(&sim->suspension, "lubrication") ? &split : &verlet;
+        *chosen = settings_child(&dynamics, "auto", e);
+    }
     if (settings_done(&dynamics, e) && !chosen->node)
-        error_raise(e, ERROR_INPUT, "dynamics must name one equation of motion: verlet");
+        error_raise(e, ERROR_INPUT, "dynamics must name one equation of motion: verlet, predicted_verlet or split");
     const int rotation = settings_has(chosen, "rotation") ? settings_choice(chosen, "rotation", rotations, e) : 0;
     if (rotation == 2 && sim->suspension.rotates)
         settings_refuse(chosen, "rotation", e, "must be \"auto\" or \"on\": a force of this scene turns particles");
     sim->suspension.rotates = sim->suspension.rotates || rotation == 1;
+    sim->suspension.implicit_friction = sim->dynamics && !sim->dynamics->explicit_friction;
+    if (sim->suspension.implicit_friction)
+        sim->suspension.friction_residual = settings_number_or(chosen, "residual", 1e-10, e);
     return !error_raised(e);
 }
 

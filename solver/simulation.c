@@ -10,12 +10,14 @@ static bool is_due(struct observer *o, int64_t step)
     return o->at_next < o->at_count && o->at[o->at_next] == step;
 }
 
-static bool measures_at(const struct simulation *sim, int64_t step)
+/* Will anybody look at the stress of this step? If so it is summed up along the way. */
+static void prepare_stress(struct simulation *sim, int64_t step)
 {
+    sim->suspension.measuring = false;
     for (int k = 0; k < sim->observer_count; k++)
-        if (sim->observer[k]->measures && is_due(sim->observer[k], step))
-            return true;
-    return false;
+        sim->suspension.measuring |= sim->observer[k]->measures && is_due(sim->observer[k], step);
+    if (sim->suspension.measuring)
+        stress_clear(&sim->suspension.stress);
 }
 
 static bool observe(struct simulation *sim, struct error *e)
@@ -47,7 +49,7 @@ bool simulation_begin(struct simulation *sim, struct error *e)
 {
     struct suspension *s = &sim->suspension;
     bool relisted;
-    s->measuring = measures_at(sim, 0);
+    prepare_stress(sim, 0);
     if (!sim->dynamics->begin(sim->dynamics, s, &relisted, e) || !sound(sim, true, e))
         e->code = ERROR_INPUT;                              /* nothing has moved yet: what is wrong is what was given */
     return !error_raised(e);
@@ -64,7 +66,7 @@ bool simulation_run(struct simulation *sim, struct error *e)
         return false;
     progress_start(&sim->progress, s->step, sim->last_step);
     while (s->step < sim->last_step) {
-        s->measuring = measures_at(sim, s->step + 1);
+        prepare_stress(sim, s->step + 1);
         if (!sim->dynamics->step(sim->dynamics, s, &relisted, e) || !sound(sim, relisted, e) || !observe(sim, e))
             break;
         progress_show(&sim->progress, s);
@@ -77,6 +79,8 @@ bool simulation_close(struct simulation *sim, struct error *e)
 {
     for (int k = 0; k < sim->observer_count && sim->observer[k]; k++)
         sim->observer[k]->close(sim->observer[k], e);
+    if (sim->dynamics && sim->dynamics->free)
+        sim->dynamics->free(&sim->suspension);
     suspension_free(&sim->suspension);
     return !error_raised(e);
 }

@@ -141,7 +141,7 @@ static void integration_of_impacts(void)
 
 static void friction_laws_at_their_thresholds(void)
 {
-    struct friction f = { NULL, 0.5, 2.0, { true, false } };
+    struct friction_rule f = { NULL, 0.5, 2.0, { true, false } };
     const double below = nextafter(2.0, 0.0);
     check_true(friction_plain(&f, 3.0, 0, 1).cap == 1.5 && friction_plain(&f, 0.0, 0, 0).lives, "plain");
     check_true(friction_critical(&f, 2.0, 0, 0).cap == 1.0 && friction_critical(&f, 2.0, 0, 0).lives, "critical at its load");
@@ -246,6 +246,27 @@ static void driven_spheres_keep_their_motion(void)
     drop(sim);
 }
 
+/* The implicit friction step moves a lubricated neighbour of a driven sphere as small explicit steps do, and leaves the driven one alone. */
+static void driven_spheres_in_the_split(void)
+{
+    vec3 free_one[2] = { { 0 } };
+    for (int implicit = 0; implicit < 2; implicit++) {
+        struct error e = { 0 };
+        char text[1200];
+        snprintf(text, sizeof text, "{\"about\":\"test\",\"fluid\":{\"viscosity\":0.7},\"box\":{\"lengths\":[12,12,12],\"periodic\":[true,true,true]}," SPHERES
+                 ",\"start\":{\"file\":\"states.csv\"},\"forces\":{\"drag\":{\"torque\":true},\"lubrication\":{\"inner_gap\":1e-3,\"outer_gap\":0.05,"
+                 "\"rotation_correction\":\"none\"}},\"dynamics\":{\"%s\":{\"dt\":1e-4}},\"run\":{\"steps\":10}}", DRIVEN, implicit ? "split" : "verlet");
+        struct simulation *sim = scene_from(text, "1,1,3,3,3,0,0,0,0,0,0\n2,2,5.42,3,3,9,9,9,9,9,9\n", &e);
+        check_true(!error_raised(&e) && simulation_begin(sim, &e) && advance(sim, 1000, &e), e.text);
+        const struct particles *p = &sim->suspension.particles;
+        check_true(p->velocity[1].x == 0.5 && p->velocity[1].y == -0.25 && p->spin[1].z == 0.5, "the driven one");
+        free_one[implicit] = p->velocity[0];
+        drop(sim);
+    }
+    check_true(norm(free_one[0]) > 0.05, "the other one is dragged along");
+    check_close(norm(minus(free_one[1], free_one[0])), 0.0, 1e-3 * norm(free_one[0]), "explicit and implicit");
+}
+
 /* Below the critical load a contact has no history; above it grows from zero. */
 static void history_lives_only_above_the_critical_load(void)
 {
@@ -270,6 +291,7 @@ static const struct unit_test tests[] = {
     { "wrong scenes are refused", wrong_scenes_are_refused },
     { "a tethered sphere oscillates through the faces", tethered_sphere_oscillates },
     { "driven spheres keep their motion", driven_spheres_keep_their_motion },
+    { "driven spheres in the split", driven_spheres_in_the_split },
     { "history lives only above the critical load", history_lives_only_above_the_critical_load },
     { NULL, NULL },
 };

@@ -11,10 +11,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-extern const struct suite box_suite, packing_suite, force_suite, scene_suite, theory_suite, theory_motion_suite, statistics_suite, tables_suite,
+extern const struct suite box_suite, packing_suite, dynamics_suite, force_suite, scene_suite, theory_suite, theory_motion_suite, statistics_suite, tables_suite,
     gate_suite, collision_suite;
 
-static const struct suite *const suites[] = { &box_suite, &packing_suite, &force_suite, &scene_suite, &theory_suite, &theory_motion_suite,
+static const struct suite *const suites[] = { &box_suite, &packing_suite, &dynamics_suite, &force_suite, &scene_suite, &theory_suite, &theory_motion_suite,
                                               &statistics_suite, &tables_suite, &gate_suite, &collision_suite };
 
 void check_close(double measured, double expected, double tolerance, const char *what)

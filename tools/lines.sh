@@ -10,7 +10,7 @@ core/force.h core/suspension.h core/suspension.c core/stress.h core/stress.c
 forces/forces.h forces/contact.h forces/contact.c forces/drag.h forces/drag.c
 core/resistance.h core/resistance.c forces/lubrication.h forces/lubrication.c
 core/noise.h forces/drag_noise.c forces/lubrication_noise.c
-core/dynamics.h dynamics/dynamics.h dynamics/verlet.c"
+core/motion.h core/motion.c core/dynamics.h dynamics/dynamics.h dynamics/verlet.c"
 # shellcheck disable=SC2086
 wc -l $tour | awk '{ printf "%6d %s\n", $1, $2 } $2 == "total" { total = $1 }
     END { printf "tour: %d lines, at most 2000\n", total; exit total > 2000 }'

@@ -22,11 +22,14 @@ struct moment {
 /* How a force answers a small change of a pair: for the step limit. */
 struct response { double normal_stiffness, tangential_stiffness, normal_dashpot, tangential_dashpot; struct resistance resistance; };
 
+/* What a force depends on tells a step when to ask for it: positions (and histories); velocities, linearly; chance. */
+enum force_kind { POTENTIAL = 1, FRICTION = 2, NOISE = 4, ALL_KINDS = 7 };
+
 struct force {
     const char *name;
     const char *origin_name[2];             /* of its stress; NULL: books none */
     int origin[2];                          /* their rows in the stress */
-    bool noise;                             /* random: left out where forces are asked for at rest */
+    enum force_kind kind;
     bool rotates;                           /* reads spins or gives torques */
     bool keeps_history, keeps_resistance, keeps_anchor;     /* what it needs of the pair list, of the particles */
     double range_factor;                    /* pairs nearer than range_factor (a_i + a_j) feel it; 0: not a pair force */

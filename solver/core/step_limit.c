@@ -6,6 +6,7 @@
 
 typedef struct { double m[6][6]; } block;
 
+/* From w^2 dt^2 + 2 g dt = 4. An implicit friction step takes the liquid's part out of g; dashpots of contacts stay. */
 static double limit_of(double g, double w2) { return 4.0 / (g + sqrt(g * g + 4.0 * w2)); }
 
 /* Largest eigenvalue of a symmetric positive semidefinite block, from above by at most 6 %: |A^16|^(1/16), Frobenius norm. */
@@ -75,13 +76,15 @@ static struct response response_of(const struct suspension *s, const struct forc
     for (int k = 0; k < s->force_count; k++)
         if (s->force[k]->respond && (!only || only == s->force[k]))
             s->force[k]->respond(s->force[k], &s->particles, a, b, gap, &r);
+    if (s->implicit_friction)
+        r.resistance = (struct resistance){ 0 };
     return r;
 }
 
 static void drag_rates(const struct suspension *s, const struct force *only, int a, double rate[2])
 {
     rate[0] = rate[1] = 0.0;
-    for (int k = 0; k < s->force_count; k++)
+    for (int k = 0; k < s->force_count && !s->implicit_friction; k++)
         if (s->force[k]->respond_alone && (!only || only == s->force[k]))
             s->force[k]->respond_alone(s->force[k], &s->particles, a, &rate[0], &rate[1]);
 }

@@ -26,21 +26,21 @@ void suspension_take(struct suspension *s, struct force *f)
                 s->neighbours.range[a][b] = fmax(s->neighbours.range[a][b], f->range_factor * (p->kind[a].radius + p->kind[b].radius));
 }
 
-bool suspension_evaluate(struct suspension *s, const struct moment *now, bool *relisted, struct error *e)
+bool suspension_find(struct suspension *s, bool *relisted, struct error *e)
+{
+    return neighbours_find(&s->neighbours, &s->box, &s->particles, relisted, e);
+}
+
+void suspension_add_forces(struct suspension *s, unsigned kinds, const struct moment *now)
 {
     struct particles *p = &s->particles;
-    if (!neighbours_find(&s->neighbours, &s->box, p, relisted, e))
-        return false;
     memset(p->force, 0, (size_t)p->count * sizeof *p->force);
     if (p->torque)
         memset(p->torque, 0, (size_t)p->count * sizeof *p->torque);
-    struct stress *stress = s->measuring ? &s->stress : NULL;
-    if (stress)
-        stress_clear(stress);
     for (int k = 0; k < s->force_count; k++)
-        s->force[k]->add(s->force[k], p, &s->neighbours.near, now, stress);
+        if (s->force[k]->kind & kinds)
+            s->force[k]->add(s->force[k], p, &s->neighbours.near, now, s->measuring ? &s->stress : NULL);
     suspension_flatten(s);
-    return true;
 }
 
 void suspension_flatten(struct suspension *s)

@@ -25,6 +25,9 @@ struct suspension {
     int kinetic_origin;
     bool measuring;                         /* the next evaluation also sums the stress */
     double overlap_limit;                   /* a run stops at a deeper one; fraction of the smaller radius */
+    void *dynamics_state;                   /* what the equation of motion keeps between steps */
+    bool implicit_friction;                 /* friction does not limit the step */
+    double friction_residual;               /* to which an implicit friction step is solved */
     int64_t step;
     double start_time, dt;                  /* time = start_time + step dt */
 };
@@ -34,8 +37,9 @@ const struct force *suspension_force(const struct suspension *s, const char *nam
 /* Takes up a force: its range, its stress rows, what it keeps. */
 void suspension_take(struct suspension *s, struct force *f);
 
-/* Pairs at the present positions, then all forces. Fails on what no force could make sense of. */
-bool suspension_evaluate(struct suspension *s, const struct moment *now, bool *relisted, struct error *e);
+/* Pairs at the present positions; forces of these kinds on them, in place of those before. The stress is only added to. */
+bool suspension_find(struct suspension *s, bool *relisted, struct error *e);
+void suspension_add_forces(struct suspension *s, unsigned kinds, const struct moment *now);
 /* In two dimensions no force leaves the plane and no torque lies in it. */
 void suspension_flatten(struct suspension *s);
 void suspension_free(struct suspension *s);

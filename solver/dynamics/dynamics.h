@@ -4,6 +4,6 @@
 
 #include "core/dynamics.h"
 
-extern const struct dynamics verlet;
+extern const struct dynamics verlet, predicted_verlet, split;
 
 #endif

@@ -15,36 +15,14 @@
  * Stable while w^2 dt^2 + 2 g dt < 4 for every mode of stiffness rate w and friction rate g.
  * Source: Verlet (1967), Swope et al. (1982).
  */
+#include "core/motion.h"
 #include "dynamics/dynamics.h"
 
-static void kick(struct suspension *s, double duration)
-{
-    struct particles *p = &s->particles;
-    double per_mass[MAX_SPECIES], per_inertia[MAX_SPECIES];
-    for (int k = 0; k < p->species_count; k++) {
-        per_mass[k] = duration / p->kind[k].mass;
-        per_inertia[k] = duration / p->kind[k].inertia;
-    }
-    for (int i = 0; i < p->count; i++)
-        p->velocity[i] = plus(p->velocity[i], scaled(p->force[i], per_mass[p->species[i]]));
-    for (int i = 0; p->spin && i < p->count; i++)
-        p->spin[i] = plus(p->spin[i], scaled(p->torque[i], per_inertia[p->species[i]]));
-}
-
-static void drift(struct suspension *s, double duration)
-{
-    struct particles *p = &s->particles;
-    for (int i = 0; i < p->count; i++)
-        p->position[i] = plus(p->position[i], scaled(p->velocity[i], duration));
-    for (int i = 0; p->turn && i < p->count; i++)
-        p->turn[i] = plus(p->turn[i], scaled(p->spin[i], duration));
-}
-
-static bool forces_after(struct suspension *s, double drift_time, bool *relisted, struct error *e)
+static void forces_after(struct suspension *s, double drift_time)
 {
     const struct moment now = { .box = &s->box, .step = s->step, .dt = s->dt, .drift_velocity = s->particles.velocity,
                                 .drift_spin = s->particles.spin, .drift_time = drift_time };
-    return suspension_evaluate(s, &now, relisted, e);
+    suspension_add_forces(s, ALL_KINDS, &now);
 }
 
 static bool verlet_step(const struct dynamics *self, struct suspension *s, bool *relisted, struct error *e)
@@ -54,8 +32,9 @@ static bool verlet_step(const struct dynamics *self, struct suspension *s, bool 
     drift(s, s->dt);
     s->step++;
     box_set_time(&s->box, s->start_time + (double)s->step * s->dt);
-    if (!forces_after(s, s->dt, relisted, e))
+    if (!suspension_find(s, relisted, e))
         return false;
+    forces_after(s, s->dt);
     kick(s, 0.5 * s->dt);
     return true;
 }
@@ -63,7 +42,10 @@ static bool verlet_step(const struct dynamics *self, struct suspension *s, bool 
 static bool verlet_begin(const struct dynamics *self, struct suspension *s, bool *relisted, struct error *e)
 {
     (void)self;
-    return forces_after(s, 0.0, relisted, e);
+    if (!suspension_find(s, relisted, e))
+        return false;
+    forces_after(s, 0.0);
+    return true;
 }
 
-const struct dynamics verlet = { "verlet", verlet_step, verlet_begin, true };
+const struct dynamics verlet = { "verlet", verlet_step, verlet_begin, NULL, true };

@@ -41,7 +41,7 @@ struct force *applied_new(struct settings *s, const struct suspension *in, struc
     struct applied *law = calloc(1, sizeof *law);
     if (!law)
         return error_out_of_memory(e), NULL;
-    law->base = (struct force){ .name = "applied", .add = applied_add };
+    law->base = (struct force){ .name = "applied", .kind = POTENTIAL, .add = applied_add };
     for (int a = 0; a < p->species_count; a++) {
         struct settings own = settings_child(s, p->kind[a].name, e);
         if (!own.node)

@@ -67,7 +67,7 @@ void contact_respond(const struct force *self, const struct particles *p, int a,
 void contact_read(struct contact *law, struct settings *s, struct error *e)
 {
     static const char *const levers[] = { "radius", "contact", NULL };
-    law->base = (struct force){ .name = "contact", .origin_name = { "contact_normal" }, .range_factor = 1.0,
+    law->base = (struct force){ .name = "contact", .origin_name = { "contact_normal" }, .kind = POTENTIAL, .range_factor = 1.0,
                                 .add = contact_add, .respond = contact_respond };
     law->normal_stiffness = settings_positive(s, "normal_stiffness", e);
     law->friction = settings_at_least(s, "friction", 0.0, e);

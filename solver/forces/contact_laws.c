@@ -28,7 +28,7 @@ enum load { LOAD_SPRING, LOAD_DAMPED, LOAD_ABSOLUTE };
 
 struct contact_laws {
     struct contact plain;
-    struct friction friction;
+    struct friction_rule friction;
     enum load load;
     bool clip;
     struct dashpot dashpot[MAX_SPECIES][MAX_SPECIES];

@@ -47,7 +47,7 @@ struct force *drag_new(struct settings *s, const struct suspension *in, struct e
     struct drag *law = calloc(1, sizeof *law);
     if (!law)
         return error_out_of_memory(e), NULL;
-    law->base = (struct force){ .name = "drag", .origin_name = { "drag" }, .add = drag_add, .respond_alone = drag_respond_alone };
+    law->base = (struct force){ .name = "drag", .origin_name = { "drag" }, .kind = FRICTION, .add = drag_add, .respond_alone = drag_respond_alone };
     law->viscosity = in->viscosity;
     law->torque = law->base.rotates = settings_flag(s, "torque", e);
     if (!(in->viscosity > 0.0))

@@ -45,7 +45,7 @@ struct force *drag_noise_new(struct settings *s, const struct suspension *in, st
     struct drag_noise *noise = calloc(1, sizeof *noise);
     if (!noise)
         return error_out_of_memory(e), NULL;
-    noise->base = (struct force){ .name = "drag_noise", .noise = true, .add = drag_noise_add };
+    noise->base = (struct force){ .name = "drag_noise", .kind = NOISE, .add = drag_noise_add };
     noise->drag = (const struct drag *)suspension_force(in, "drag");
     noise->kT = in->kT;
     noise->key = in->key;

@@ -22,11 +22,11 @@
 #include "core/particles.h"
 #include "core/settings.h"
 
-struct friction;
+struct friction_rule;
 struct grip { double cap; bool lives; };            /* largest tangential force; whether there is a history at all */
-typedef struct grip friction_law(const struct friction *f, double load, int a, int b);
+typedef struct grip friction_law(const struct friction_rule *f, double load, int a, int b);
 
-struct friction {
+struct friction_rule {
     friction_law *law;
     double coefficient, critical_load;
     bool rough[MAX_SPECIES];
@@ -35,6 +35,6 @@ struct friction {
 friction_law friction_plain, friction_critical, friction_soft, friction_shifted, friction_binary;
 
 /* Keys `law`, and what that law needs: `critical_load`, or `rough` (a list of true or false, one per species). */
-void friction_read(struct friction *f, double coefficient, const struct particles *p, struct settings *s, struct error *e);
+void friction_read(struct friction_rule *f, double coefficient, const struct particles *p, struct settings *s, struct error *e);
 
 #endif

@@ -35,17 +35,11 @@ static void lubrication_add(const struct force *self, struct particles *p, struc
         if (near->resistance)
             near->resistance[k] = R;
 
-        const vec3 n = pair->normal;
         const vec3 dU = minus(plus(p->velocity[j], pair->image_velocity), p->velocity[i]);
-        const vec3 W_i = p->spin[i], W_j = p->spin[j];
-        const double approach = dot(dU, n);
-        const vec3 rolling = cross(plus(scaled(W_i, R.B_1), scaled(W_j, R.B_2)), n);
-        const vec3 force = plus(plus(scaled(n, (R.X_A - R.Y_A) * approach), scaled(dU, R.Y_A)), rolling);
-        const vec3 twist = cross(dU, n);
-        const vec3 spin_i = across(plus(scaled(W_i, R.C_11), scaled(W_j, R.C_12)), n);
-        const vec3 spin_j = across(plus(scaled(W_i, R.C_12), scaled(W_j, R.C_22)), n);
+        vec3 torque_i, torque_j;
+        const vec3 force = resistance_act(&R, pair->normal, dU, p->spin[i], p->spin[j], &torque_i, &torque_j);
         pair_push(p, pair, force);
-        pair_turn(p, pair, minus(scaled(twist, R.B_1), spin_i), minus(scaled(twist, R.B_2), spin_j));
+        pair_turn(p, pair, torque_i, torque_j);
         if (stress)
             stress_add_pair(stress, self->origin[0], pair, force);
     }
@@ -67,7 +61,7 @@ struct force *lubrication_new(struct settings *s, const struct suspension *in, s
     struct lubrication *law = calloc(1, sizeof *law);
     if (!law)
         return error_out_of_memory(e), NULL;
-    law->base = (struct force){ .name = "lubrication", .origin_name = { "lubrication" }, .rotates = true,
+    law->base = (struct force){ .name = "lubrication", .origin_name = { "lubrication" }, .kind = FRICTION, .rotates = true,
                                 .add = lubrication_add, .respond = lubrication_respond };
     law->inner_gap = settings_positive(s, "inner_gap", e);
     law->outer_gap = settings_positive(s, "outer_gap", e);

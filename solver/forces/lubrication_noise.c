@@ -58,7 +58,7 @@ struct force *lubrication_noise_new(struct settings *s, const struct suspension 
     struct lubrication_noise *noise = calloc(1, sizeof *noise);
     if (!noise)
         return error_out_of_memory(e), NULL;
-    noise->base = (struct force){ .name = "lubrication_noise", .origin_name = { "lubrication_noise" }, .noise = true, .rotates = true,
+    noise->base = (struct force){ .name = "lubrication_noise", .origin_name = { "lubrication_noise" }, .kind = NOISE, .rotates = true,
                                   .keeps_resistance = true, .add = lubrication_noise_add };
     noise->drag = (const struct lubrication *)suspension_force(in, "lubrication");
     noise->kT = in->kT;

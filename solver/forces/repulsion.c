@@ -64,7 +64,7 @@ struct force *repulsion_new(struct settings *s, const struct suspension *in, str
     (void)in;
     if (!law)
         return error_out_of_memory(e), NULL;
-    law->base = (struct force){ .name = "repulsion", .origin_name = { "repulsion" }, .add = repulsion_add, .respond = repulsion_respond };
+    law->base = (struct force){ .name = "repulsion", .origin_name = { "repulsion" }, .kind = POTENTIAL, .add = repulsion_add, .respond = repulsion_respond };
     law->by_energy = settings_choice(s, "form", forms, e) == 0;
     law->strength = settings_at_least(s, law->by_energy ? "energy" : "force", 0.0, e);
     law->kappa_factor = settings_positive(s, "kappa_factor", e);

@@ -39,7 +39,7 @@ struct force *tether_new(struct settings *s, const struct suspension *in, struct
     struct tether *law = calloc(1, sizeof *law);
     if (!law)
         return error_out_of_memory(e), NULL;
-    law->base = (struct force){ .name = "tether", .keeps_anchor = true, .add = tether_add, .stiffness_alone = tether_stiffness };
+    law->base = (struct force){ .name = "tether", .keeps_anchor = true, .kind = POTENTIAL, .add = tether_add, .stiffness_alone = tether_stiffness };
     for (int a = 0; a < p->species_count; a++) {
         struct settings own = settings_child(s, p->kind[a].name, e);
         if (!own.node)

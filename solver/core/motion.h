@@ -1,0 +1,10 @@
+/* The two movements that every step is made of. */
+#ifndef CORE_MOTION_H
+#define CORE_MOTION_H
+
+#include "core/suspension.h"
+
+void kick(struct suspension *s, double duration);       /* U += duration F/m,  W += duration T/I */
+void drift(struct suspension *s, double duration);      /* x += duration U, and the angle turned where it is kept */
+
+#endif
