@@ -18,6 +18,9 @@ static const struct force_row {
     const char *quenched_by;                    /* at kT > 0 this force must be there too */
 } force_rows[] = {
     { "contact", contact_new, false, NULL },
+    { "repulsion", repulsion_new, false, NULL },
+    { "applied", applied_new, false, NULL },
+    { "tether", tether_new, false, NULL },
     { "drag", drag_new, false, "drag_noise" },
     { "lubrication", lubrication_new, false, "lubrication_noise" },
     { "drag_noise", drag_noise_new, true, NULL },
@@ -73,8 +76,9 @@ static bool build_species(struct settings *root, struct particles *p, struct err
         struct settings kind = settings_item(root, "species", k, e);
         const char *name = settings_text(&kind, "name", e);
         const double radius = settings_positive(&kind, "radius", e), density = settings_positive(&kind, "density", e);
+        p->kind[p->species_count] = species_sphere(name, radius, density);
+        species_motion(&p->kind[p->species_count++], &kind, e);
         settings_done(&kind, e);
-        p->kind[p->species_count++] = species_sphere(name, radius, density);
     }
     return !error_raised(e);
 }

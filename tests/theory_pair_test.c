@@ -93,7 +93,7 @@ static void far_apart_each_is_free(void)
 static void friction_keeps_momenta_and_takes_energy(void)
 {
     struct theory_motion m = two_spheres();
-    const struct theory_contact contact = { 2000.0, 600.0, 0.3, true };
+    const struct theory_contact contact = { .normal_stiffness = 2000.0, .tangential_stiffness = 600.0, .friction = 0.3, .lever_at_contact = true };
     m.lubrication = NULL;
     m.contact = &contact;
     struct theory_pair_state p = { .s = { { .radius = 1.3, .u = { 0.2, 0.5, 0 }, .w = { 0.3, -0.2, 0.6 } },

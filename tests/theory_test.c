@@ -299,7 +299,7 @@ static void pairs_obey_the_invariants(void)
 
 static void worked_contact_of_equal_spheres(void)
 {
-    const struct theory_contact law = { 1e4, 7000.0, 0.5, false };
+    const struct theory_contact law = { .normal_stiffness = 1e4, .tangential_stiffness = 7000.0, .friction = 0.5, .lever_at_contact = false };
     const struct theory_sphere s[2] = { { .radius = 1.0 }, { .radius = 1.0, .x = { 1.99, 0.0, 0.0 } } };
     const double history[3] = { 0.0, 1e-4, 0.0 };
     struct theory_pair pair;
@@ -316,7 +316,7 @@ static void worked_contact_of_equal_spheres(void)
 /* Forces and torques are minus the derivatives of k_n delta^2/2 + k_t s_t^2/2 for small motions (sticking). */
 static void contact_forces_are_the_slope_of_an_energy(void)
 {
-    const struct theory_contact law = { 900.0, 400.0, 1e3, true };
+    const struct theory_contact law = { .normal_stiffness = 900.0, .tangential_stiffness = 400.0, .friction = 1e3, .lever_at_contact = true };
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     for (int k = 0; k < RATIOS; k++) {
         struct theory_sphere s[2];
@@ -351,7 +351,7 @@ static void contact_obeys_cap_and_torque_balance(void)
 {
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     for (int k = 0; k < 4 * RATIOS; k++) {
-        const struct theory_contact law = { 900.0, 300.0, k % 4 < 2 ? 0.5 : 0.0, k % 2 == 1 };
+        const struct theory_contact law = { .normal_stiffness = 900.0, .tangential_stiffness = 300.0, .friction = k % 4 < 2 ? 0.5 : 0.0, .lever_at_contact = k % 2 == 1 };
         struct theory_sphere s[2];
         struct theory_pair pair;
         double history[3], residual[3], moment[3], r[3], scale = 0.0;

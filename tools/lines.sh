@@ -7,7 +7,7 @@ tour="shear.c scene.h scene.c simulation.h simulation.c
 core/vec3.h core/particles.h core/particles.c core/box.h core/box.c
 core/pairs.h core/neighbours.h core/neighbours.c
 core/force.h core/suspension.h core/suspension.c core/stress.h core/stress.c
-forces/forces.h forces/contact.c forces/drag.h forces/drag.c
+forces/forces.h forces/contact.h forces/contact.c forces/drag.h forces/drag.c
 core/resistance.h core/resistance.c forces/lubrication.h forces/lubrication.c
 core/noise.h forces/drag_noise.c forces/lubrication_noise.c
 core/motion.h core/motion.c core/dynamics.h dynamics/dynamics.h dynamics/verlet.c"

@@ -2,6 +2,7 @@
 
 #include "core/conjugate.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -41,6 +42,9 @@ bool friction_gather(struct friction *f, const struct suspension *s, double dt, 
     if (!make_room(f, s, e))
         return false;
     f->half_dt = 0.5 * dt;
+    f->driven = false;
+    for (int a = 0; a < p->species_count; a++)
+        f->driven = f->driven || p->kind[a].driven;
     for (int i = 0; i < p->count; i++) {
         double rate[2] = { 0.0, 0.0 };
         for (int k = 0; k < s->force_count; k++)
@@ -49,8 +53,8 @@ bool friction_gather(struct friction *f, const struct suspension *s, double dt, 
         for (int c = 0; c < f->width; c++) {
             const int at = i * f->width + c;
             f->mass[at] = c < 3 ? mass_of(p, i) : inertia_of(p, i);
-            f->drag[at] = rate[c / 3] * f->mass[at];
-            f->diagonal[at] = f->mass[at] + f->half_dt * f->drag[at];
+            f->drag[at] = p->kind[p->species[i]].driven ? 0.0 : rate[c / 3] * f->mass[at];
+            f->diagonal[at] = p->kind[p->species[i]].driven ? 1.0 : f->mass[at] + f->half_dt * f->drag[at];
         }
     }
     f->links = 0;
@@ -96,6 +100,9 @@ void friction_apply(const void *context, const double *x, double *y)
             add3(y_j + 3, -h, torque_j);
         }
     }
+    for (int k = 0; k < f->count * f->width && f->driven; k++)
+        if (isinf(f->mass[k]))
+            y[k] = x[k];                    /* nothing changes a driven particle's velocity: x = 0 there */
 }
 
 bool friction_solve(struct friction *f, const struct suspension *s, double residual, struct error *e)
@@ -104,6 +111,8 @@ bool friction_solve(struct friction *f, const struct suspension *s, double resid
     for (int i = 0; i < p->count; i++) {
         double *b = f->rhs + i * f->width;
         memset(b, 0, (size_t)f->width * sizeof *b);
+        if (p->kind[p->species[i]].driven)
+            continue;
         add3(b, f->half_dt, p->force[i]);
         if (f->width == 6)
             add3(b + 3, f->half_dt, p->torque[i]);

@@ -19,6 +19,7 @@ struct friction_link { int i, j; vec3 normal; struct resistance resistance; };
 
 struct friction {
     int count, links, room, width;          /* particles; resisted pairs; numbers per particle: 3, or 6 with spins */
+    bool driven;                            /* some particles keep their velocity: mass infinite */
     double half_dt;
     struct friction_link *link;
     double *number;                         /* every array below lies in here */

@@ -18,7 +18,8 @@ bool particles_allocate(struct particles *p, int count, bool rotation, struct er
         p->spin = calloc(n, sizeof(vec3));
         p->torque = calloc(n, sizeof(vec3));
     }
-    if (!p->tag || !p->species || !p->image || !p->position || !p->velocity || !p->force || (rotation && (!p->spin || !p->torque)))
+    p->anchor = p->anchored ? calloc(n, sizeof(vec3)) : NULL;
+    if ((p->anchored && !p->anchor) || !p->tag || !p->species || !p->image || !p->position || !p->velocity || !p->force || (rotation && (!p->spin || !p->torque)))
         return error_out_of_memory(e);
     for (int i = 0; i < count; i++)
         p->tag[i] = i + 1;
@@ -27,12 +28,12 @@ bool particles_allocate(struct particles *p, int count, bool rotation, struct er
 
 void particles_free(struct particles *p)
 {
-    void *const arrays[] = { p->tag, p->species, p->body, p->image, p->position, p->velocity, p->force, p->spin, p->torque, p->turn };
+    void *const arrays[] = { p->tag, p->species, p->body, p->image, p->position, p->velocity, p->force, p->spin, p->torque, p->anchor, p->turn };
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         free(arrays[k]);
     p->tag = p->species = p->body = NULL;
     p->image = NULL;
-    p->position = p->velocity = p->force = p->spin = p->torque = p->turn = NULL;
+    p->position = p->velocity = p->force = p->spin = p->torque = p->anchor = p->turn = NULL;
 }
 
 struct species species_sphere(const char *name, double radius, double density)

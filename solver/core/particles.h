@@ -15,6 +15,8 @@ struct species {
     double density;                 /* rho            [M/L^3] */
     double mass;                    /* (4/3) pi rho a^3 [M] */
     double inertia;                 /* (2/5) m a^2    [M L^2] */
+    bool driven;                    /* keeps velocity and spin whatever acts on it: mass and inertia are infinite */
+    vec3 velocity, spin;            /* of a driven one; 0: held [L/T], [1/T] */
 };
 
 struct particles {
@@ -30,6 +32,8 @@ struct particles {
     vec3 *force;                    /* F                    [M L/T^2] */
     vec3 *spin;                     /* W; NULL: the scene has no rotation [1/T] */
     vec3 *torque;                   /* T; NULL likewise     [M L^2/T^2] */
+    bool anchored;                  /* a force reads `anchor` */
+    vec3 *anchor;                   /* place at the start, unwrapped; NULL likewise [L] */
     vec3 *turn;                     /* time integral of W; NULL unless an output asks for it */
 };
 

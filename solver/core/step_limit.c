@@ -63,7 +63,10 @@ static void add_pair(struct blocks *at, const struct suspension *s, const struct
     const struct species *own = &s->particles.kind[a];
     const struct resistance *R = &r->resistance;
     add_side(&at->friction, weight, own->mass, own->inertia, n, side, R->X_A, R->Y_A, side > 0 ? R->B_1 : R->B_2, side > 0 ? R->C_11 : R->C_22);
-    const double k = r->tangential_stiffness, lever = own->radius;
+    const double k = r->tangential_stiffness, zeta = r->tangential_dashpot, lever = own->radius;
+    if (own->driven)
+        return;
+    add_side(&at->friction, weight, own->mass, own->inertia, n, side, r->normal_dashpot, zeta, -zeta * lever, zeta * lever * lever);
     add_side(&at->stiffness, weight, own->mass, own->inertia, n, side, r->normal_stiffness, k, -k * lever, k * lever * lever);
 }
 
@@ -90,12 +93,22 @@ static void drag_rates(const struct suspension *s, const struct force *only, int
             s->force[k]->respond_alone(s->force[k], &s->particles, a, &rate[0], &rate[1]);
 }
 
+static double stiffness_alone(const struct suspension *s, const struct force *only, int a)
+{
+    double k = 0.0;
+    for (int f = 0; f < s->force_count; f++)
+        if (s->force[f]->stiffness_alone && (!only || only == s->force[f]))
+            k += s->force[f]->stiffness_alone(s->force[f], &s->particles, a);
+    return k;
+}
+
 static void judge(struct step_limit *worst, const struct suspension *s, const struct force *only, int species, const struct blocks *at,
                   int tag, int neighbours)
 {
     double drag[2];
     drag_rates(s, only, species, drag);
-    const double g = largest_eigenvalue(at->friction) + fmax(drag[0], drag[1]), w2 = largest_eigenvalue(at->stiffness);
+    const double g = largest_eigenvalue(at->friction) + fmax(drag[0], drag[1]);
+    const double w2 = largest_eigenvalue(at->stiffness) + stiffness_alone(s, only, species) / s->particles.kind[species].mass;
     const double dt = limit_of(g, w2);
     if (dt < worst->dt)
         *worst = (struct step_limit){ dt, NULL, tag, neighbours, g, w2 };
@@ -151,7 +164,7 @@ struct step_limit step_limit_of(const struct suspension *s, struct error *e)
     double least = INFINITY;
     all.force = "no force";
     for (int k = 0; k < s->force_count; k++) {
-        if ((!s->force[k]->respond && !s->force[k]->respond_alone) || !limits(s, s->force[k], NULL))
+        if ((!s->force[k]->respond && !s->force[k]->respond_alone && !s->force[k]->stiffness_alone) || !limits(s, s->force[k], NULL))
             continue;
         const double own = limit_with(s, s->force[k], e).dt;
         if (own < least) {
@@ -177,14 +190,16 @@ static bool surely_stable(const struct suspension *s, double dt)
         for (int side = 0; side < 2; side++) {
             const int i = end[side];
             const double m = mass_of(p, i), I = inertia_of(p, i), a = radius_of(p, i), C = side ? R->C_22 : R->C_11;
-            trace[i][0] += 2.0 * ((R->X_A + 2.0 * R->Y_A) / m + 2.0 * C / I);
+            const double zeta = r.tangential_dashpot;
+            trace[i][0] += 2.0 * ((R->X_A + 2.0 * R->Y_A + r.normal_dashpot + 2.0 * zeta) / m + 2.0 * (C + zeta * a * a) / I);
             trace[i][1] += 2.0 * ((r.normal_stiffness + 2.0 * r.tangential_stiffness) / m + 2.0 * r.tangential_stiffness * a * a / I);
         }
     }
     for (int i = 0; stable && i < p->count; i++) {
         double drag[2];
         drag_rates(s, NULL, p->species[i], drag);
-        stable = dt < limit_of(trace[i][0] + fmax(drag[0], drag[1]), trace[i][1]);
+        const double w2 = trace[i][1] + stiffness_alone(s, NULL, p->species[i]) / mass_of(p, i);
+        stable = dt < limit_of(trace[i][0] + fmax(drag[0], drag[1]), w2);
     }
     struct step_limit lone = { INFINITY, NULL, 0, 0, 0.0, 0.0 };
     judge_lone_pairs(&lone, s, NULL);
@@ -200,6 +215,9 @@ double step_advised(const struct suspension *s)
     for (int a = 0; a < p->species_count; a++) {
         double drag[2];
         drag_rates(s, NULL, a, drag);
+        const double k = stiffness_alone(s, NULL, a);
+        if (k > 0.0)
+            dt = fmin(dt, 0.03 * M_PI * sqrt(p->kind[a].mass / k));
         if (drag[0] > 0.0)
             dt = fmin(dt, 0.02 / fmax(drag[0], drag[1]));
         for (int b = 0; b < p->species_count && touching > 0; b++) {
@@ -207,6 +225,8 @@ double step_advised(const struct suspension *s)
             const double per_mass = 1.0 / p->kind[a].mass + 1.0 / p->kind[b].mass;
             if (r.normal_stiffness > 0.0)
                 dt = fmin(dt, 0.03 * M_PI / sqrt(r.normal_stiffness * per_mass));
+            if (r.normal_dashpot + r.tangential_dashpot > 0.0)      /* rotation makes the tangential rate 7/2 times as fast */
+                dt = fmin(dt, 0.1 / (fmax(r.normal_dashpot, 3.5 * r.tangential_dashpot) * per_mass));
             if (r.resistance.X_A > 0.0 && s->kT > 0.0)
                 dt = fmin(dt, 0.1 / (r.resistance.X_A * per_mass));
             /* z neighbours all around bring a particle's rate to about z/3 of one pair's */

@@ -24,6 +24,7 @@ void stress_kinetic(struct stress *s, int origin, const struct box *box, const s
 {
     for (int i = 0; i < p->count; i++) {
         const vec3 peculiar = minus(p->velocity[i], box_flow(box, p->position[i]));
-        mat3_add_outer(&s->sum[origin], -mass_of(p, i), peculiar, peculiar);
+        if (!p->kind[p->species[i]].driven)         /* a driven one's momentum is not the crowd's */
+            mat3_add_outer(&s->sum[origin], -mass_of(p, i), peculiar, peculiar);
     }
 }

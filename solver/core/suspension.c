@@ -16,12 +16,14 @@ void suspension_take(struct suspension *s, struct force *f)
     struct particles *p = &s->particles;
     s->force[s->force_count++] = f;
     s->neighbours.keeps_history |= f->keeps_history;
+    p->anchored |= f->keeps_anchor;
     s->neighbours.near.keeps_resistance |= f->keeps_resistance;
     for (int k = 0; k < 2 && f->origin_name[k]; k++)
         f->origin[k] = stress_origin(&s->stress, f->origin_name[k]);
     for (int a = 0; a < p->species_count; a++)
         for (int b = 0; b < p->species_count; b++)
-            s->neighbours.range[a][b] = fmax(s->neighbours.range[a][b], f->range_factor * (p->kind[a].radius + p->kind[b].radius));
+            if (!(p->kind[a].driven && p->kind[b].driven))      /* two driven ones are no pair: nothing could come of it */
+                s->neighbours.range[a][b] = fmax(s->neighbours.range[a][b], f->range_factor * (p->kind[a].radius + p->kind[b].radius));
 }
 
 bool suspension_find(struct suspension *s, bool *relisted, struct error *e)

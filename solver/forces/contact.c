@@ -16,33 +16,10 @@
  * is shortened too, so that a contact that slides back pushes back at once. The cap is the spring's alone.
  * With lever `radius` T_i + T_j + r x F_j = delta n x f_t is left over: angular momentum is kept to delta/r only.
  */
+#include "forces/contact.h"
 #include "forces/forces.h"
 
 #include <stdlib.h>
-
-struct contact {
-    struct force base;
-    double normal_stiffness;            /* k_n [M/T^2] */
-    double tangential_stiffness;        /* k_t [M/T^2] */
-    double friction;                    /* mu */
-    bool lever_at_contact;
-};
-
-static void advance_history(const struct contact *law, const struct pair *pair, double l_i, double l_j,
-                            const struct moment *now)
-{
-    const vec3 n = pair->normal;
-    if (now->drift_time > 0.0) {
-        const vec3 spins = plus(scaled(now->drift_spin[pair->i], l_i), scaled(now->drift_spin[pair->j], l_j));
-        const vec3 slip = plus(minus(minus(now->drift_velocity[pair->i], now->drift_velocity[pair->j]), pair->image_velocity),
-                               cross(spins, n));
-        *pair->history = plus(*pair->history, scaled(across(slip, n), now->drift_time));
-    }
-    *pair->history = across(*pair->history, n);
-    const double size = norm(*pair->history), cap = law->friction * law->normal_stiffness * -pair->gap;
-    if (law->tangential_stiffness * size > cap)
-        *pair->history = scaled(*pair->history, cap / (law->tangential_stiffness * size));
-}
 
 static void contact_add(const struct force *self, struct particles *p, struct near_pairs *near, const struct moment *now,
                         struct stress *stress)
@@ -62,10 +39,13 @@ static void contact_add(const struct force *self, struct particles *p, struct ne
         if (!self->keeps_history)
             continue;
 
-        const double a_i = radius_of(p, pair->i), a_j = radius_of(p, pair->j);
+        const double a_i = radius_of(p, pair->i), a_j = radius_of(p, pair->j), k_t = law->tangential_stiffness;
         const double arm = law->lever_at_contact ? pair->distance / (a_i + a_j) : 1.0;
-        advance_history(law, pair, arm * a_i, arm * a_j, now);
-        const vec3 rub = scaled(*pair->history, -law->tangential_stiffness);
+        contact_advance(pair, arm * a_i, arm * a_j, now);
+        const double size = norm(*pair->history), cap = law->friction * law->normal_stiffness * -pair->gap;
+        if (k_t * size > cap)
+            *pair->history = scaled(*pair->history, cap / (k_t * size));
+        const vec3 rub = scaled(*pair->history, -k_t);
         const vec3 turn = cross(pair->normal, rub);
         pair_push(p, pair, rub);
         pair_turn(p, pair, scaled(turn, arm * a_i), scaled(turn, arm * a_j));
@@ -74,7 +54,7 @@ static void contact_add(const struct force *self, struct particles *p, struct ne
     }
 }
 
-static void contact_respond(const struct force *self, const struct particles *p, int a, int b, double gap, struct response *r)
+void contact_respond(const struct force *self, const struct particles *p, int a, int b, double gap, struct response *r)
 {
     const struct contact *law = (const struct contact *)self;
     (void)p, (void)a, (void)b;
@@ -84,26 +64,30 @@ static void contact_respond(const struct force *self, const struct particles *p,
     r->tangential_stiffness += law->tangential_stiffness;
 }
 
-/* "contact": { "normal_stiffness": 1e4, "tangential_stiffness": 2857, "friction": 0.5, "lever": "radius" } */
-struct force *contact_new(struct settings *s, const struct suspension *in, struct error *e)
+void contact_read(struct contact *law, struct settings *s, struct error *e)
 {
     static const char *const levers[] = { "radius", "contact", NULL };
-    struct contact *law = calloc(1, sizeof *law);
-    (void)in;
-    if (!law)
-        return error_out_of_memory(e), NULL;
     law->base = (struct force){ .name = "contact", .origin_name = { "contact_normal" }, .kind = POTENTIAL, .range_factor = 1.0,
                                 .add = contact_add, .respond = contact_respond };
     law->normal_stiffness = settings_positive(s, "normal_stiffness", e);
     law->friction = settings_at_least(s, "friction", 0.0, e);
+    settings_has(s, "tangential_stiffness"), settings_has(s, "lever");      /* allowed without friction, so that it can be swept to 0 */
     if (law->friction > 0.0) {
         law->tangential_stiffness = settings_positive(s, "tangential_stiffness", e);
         law->lever_at_contact = settings_choice(s, "lever", levers, e) == 1;
         law->base.origin_name[1] = "contact_tangential";
         law->base.keeps_history = law->base.rotates = true;
-    } else {
-        settings_has(s, "tangential_stiffness");                    /* allowed, so that friction can be swept to 0 */
-        settings_has(s, "lever");
     }
+}
+
+/* "contact": { "normal_stiffness": 1e4, "tangential_stiffness": 2857, "friction": 0.5, "lever": "radius" } */
+struct force *contact_new(struct settings *s, const struct suspension *in, struct error *e)
+{
+    if (settings_has(s, "normal_damping") || settings_has(s, "restitution") || settings_has(s, "law"))
+        return contact_laws_new(s, in, e);
+    struct contact *law = calloc(1, sizeof *law);
+    if (!law)
+        return error_out_of_memory(e), NULL;
+    contact_read(law, s, e);
     return &law->base;
 }

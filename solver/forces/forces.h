@@ -6,6 +6,10 @@
 #include "core/suspension.h"
 
 struct force *contact_new(struct settings *s, const struct suspension *in, struct error *e);
+struct force *contact_laws_new(struct settings *s, const struct suspension *in, struct error *e);
+struct force *repulsion_new(struct settings *s, const struct suspension *in, struct error *e);
+struct force *applied_new(struct settings *s, const struct suspension *in, struct error *e);
+struct force *tether_new(struct settings *s, const struct suspension *in, struct error *e);
 struct force *drag_new(struct settings *s, const struct suspension *in, struct error *e);
 struct force *drag_noise_new(struct settings *s, const struct suspension *in, struct error *e);
 struct force *lubrication_new(struct settings *s, const struct suspension *in, struct error *e);

@@ -20,6 +20,12 @@ void thermal_start(struct suspension *s);
 /* Velocities that follow the flow, spins of half its vorticity. */
 void follow_flow(struct suspension *s);
 
+/* A species' key `motion`: "free", "held", or a velocity and a spin. */
+void species_motion(struct species *kind, struct settings *s, struct error *e);
+
+/* Right after particles were placed: driven ones get their velocity and spin, tethered ones their anchors. */
+void start_moving(struct particles *p);
+
 /* Independent configurations read from one file. */
 struct state_file;
 struct state_file *state_file_read(const char *path, struct error *e);

@@ -174,5 +174,6 @@ bool random_start(struct settings *s, struct suspension *in, struct error *e)
     memset(p->image, 0, (size_t)count * sizeof *p->image);
     memset(p->velocity, 0, (size_t)count * sizeof *p->velocity);
     follow_flow(in);
+    start_moving(p);
     return true;
 }

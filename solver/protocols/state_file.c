@@ -146,5 +146,6 @@ bool state_file_place(const struct state_file *f, int state, struct suspension *
         if (p->spin)
             p->spin[i] = vec(v[WX], v[WY], v[WZ]);
     }
+    start_moving(p);
     return true;
 }

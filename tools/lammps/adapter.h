@@ -23,6 +23,7 @@ struct task {
     double radius[SPECIES_ROOM], density[SPECIES_ROOM];
     bool contact, drag, torque;
     double normal_stiffness, tangential_stiffness, friction;
+    double normal_damping, tangential_damping;     /* gamma [1/T]: a dashpot m_eff gamma */
     double time, dt;
     long steps, stress_every, states_every;     /* 0: not wanted */
     int count, states;                          /* particles per state, states */

@@ -5,7 +5,7 @@
  *
  * How LAMMPS (29 Sep 2021) differs from docs/formats.md, and what is done about it:
  *
- *   contact    gran/hooke/history with gamma_n = gamma_t = 0: F = k_n delta, tangential spring with Coulomb cap, full radii
+ *   contact    gran/hooke/history, with dashpots where the scene has them: F = k_n delta, tangential spring with Coulomb cap, full radii
  *              as lever arms. gran/hooke (no history) where there is no friction.
  *   drag       fix langevin at T = 0 is -(m/damp) u. damp = m/(6 pi eta a) of species 1, `scale` for the others. With the
  *              bias of compute temp/deform, u is taken relative to the box's flow h_rate * lamda = rate (y - ylo); the cell
@@ -117,10 +117,10 @@ static void write_physics(FILE *f, const struct task *t, int state, bool contact
     fprintf(f, "clear\nunits lj\natom_style sphere\nboundary p p p\nnewton off\ncomm_modify vel yes\nbox tilt large\n"
                "read_data lammps-%d.data\n", state);
     if (contact && t->friction > 0)
-        fprintf(f, "pair_style gran/hooke/history %.17g %.17g 0 0 %.17g 0\npair_coeff * *\n", t->normal_stiffness,
-                t->tangential_stiffness, t->friction);
+        fprintf(f, "pair_style gran/hooke/history %.17g %.17g %.17g %.17g %.17g %d\npair_coeff * *\n", t->normal_stiffness,
+                t->tangential_stiffness, t->normal_damping, t->tangential_damping, t->friction, t->tangential_damping > 0);
     else if (contact)
-        fprintf(f, "pair_style gran/hooke %.17g 0 0 0 0 0\npair_coeff * *\n", t->normal_stiffness);
+        fprintf(f, "pair_style gran/hooke %.17g 0 %.17g 0 0 0\npair_coeff * *\n", t->normal_stiffness, t->normal_damping);
     else
         fprintf(f, "pair_style zero %.17g\npair_coeff * *\n", 2 * largest);
     /* The skin costs neighbours, but LAMMPS also rebuilds its lists when a corner of the sheared cell has moved half of it. */

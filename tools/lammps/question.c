@@ -57,12 +57,20 @@ static void read_forces(struct task *t, const json_t *scene)
     only(forces, "the force", (const char *const[]){ "contact", "drag", NULL });
     if ((f = json_object_get(forces, "contact"))) {
         t->contact = true;
+        only(f, "the contact's key", (const char *const[]){ "normal_stiffness", "tangential_stiffness", "friction", "lever", "normal_damping",
+                                                           "tangential_damping", "tension", "cap", NULL });
         t->normal_stiffness = number(f, "normal_stiffness");
         t->friction = number(f, "friction");
         if (t->friction > 0) {
             t->tangential_stiffness = number(f, "tangential_stiffness");
             if (strcmp(text(f, "lever"), "radius"))
                 unsupported("gran/hooke/history turns contacts about the full radii: only \"lever\": \"radius\"");
+        }
+        if (json_object_get(f, "normal_damping")) {
+            t->normal_damping = number(f, "normal_damping");
+            t->tangential_damping = t->friction > 0 ? number(f, "tangential_damping") : 0;
+            if (strcmp(text(f, "tension"), "allow") || (t->friction > 0 && strcmp(text(f, "cap"), "absolute")))
+                unsupported("gran/hooke/history lets contacts pull and caps friction by the absolute damped force: only \"allow\" and \"absolute\"");
         }
     }
     if ((f = json_object_get(forces, "drag"))) {
@@ -211,6 +219,7 @@ struct task read_task(const char *case_dir)
     json_array_foreach(json_object_get(scene, "species"), k, species) {
         if (k == SPECIES_ROOM)
             unsupported("this adapter takes at most %d species", SPECIES_ROOM);
+        only(species, "the species' key", (const char *const[]){ "name", "radius", "density", NULL });
         t.radius[k] = number(species, "radius");
         t.density[k] = number(species, "density");
         t.species_count++;

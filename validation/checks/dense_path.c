@@ -133,7 +133,9 @@ void dense_path(struct check_run *run)
         const char *const origin[3] = { "contact_normal", "kinetic", friction ? "contact_tangential" : NULL };
         double error;
         judge_states(run, &s, out, steps, every);
-        for (int o = 0; o < 3; o++)
+        /* LAMMPS works a frictional pair out anew when it writes it, then with full-step velocities: dashpots spoil that stress. */
+        const bool stress = !json_is_false(json_object_get(par, "stress"));
+        for (int o = 0; o < 3 && stress; o++)
             if (origin[o] && compare_stress(run, out, origin[o], &error))
                 check_error(run, MODEL, origin[o], error, 0, error, run->gate_case->tolerance,
                             "the %s stress differs from LAMMPS's by %.2g of its largest component along the path", origin[o], error);

@@ -4,5 +4,5 @@
 const struct check pair_checks[] = {
     { "pair-forces", pair_forces }, { "pair-resistance", pair_resistance }, { "pair-frames", pair_frames },
     { "pair-rigid", pair_rigid },   { "pair-crowd", pair_crowd },           { "pair-drag", pair_drag },
-    { "pair-units", pair_units },   { NULL, NULL },
+    { "pair-units", pair_units },   { "pair-repulsion", pair_repulsion }, { "pair-applied", pair_applied }, { NULL, NULL },
 };

@@ -27,15 +27,23 @@ void apply(double m[3][3], const double a[3], double out[3]);       /* out = m a
 
 struct model {
     struct theory_lubrication lubrication;
-    struct theory_contact contact;
+    struct theory_contact contact;      /* masses and roughness are those of a pair: contact_between */
+    struct theory_repulsion repulsion;
     bool has_lubrication, has_contact, has_drag, drag_torque;
     double viscosity, gradient[3][3], cell[3][3] /* rows: vectors at the evaluated time */, volume, time;
     bool open[3];       /* directions of the cell that are not periodic */
     size_t species;
     double radius[64], density[64];
+    bool has_laws, rough[64];           /* a dashpot or a friction law beside the plain contact */
+    bool driven[64];                    /* held species too */
+    double velocity[64][3], spin[64][3];
 };
 /* False (with a recorded failure) if the case's scene lacks something; that is a mistake in the suite. */
 bool model_read(struct check_run *run, const json_t *scene, struct model *m);
+/* Part of model_read: dashpots, friction laws, repulsion, motion of species. */
+void model_read_laws(const json_t *scene, struct model *m);
+/* The contact law of two spheres, told apart by their radii. */
+struct theory_contact contact_between(const struct model *m, double a1, double a2);
 /* The scene of the case with what a variant changes: "shear", "time", "lengths", "cell", "periodic". Caller owns the result. */
 json_t *variant_scene(const struct gate_case *c, const json_t *variant);
 int model_species(const struct model *m, double radius);            /* number from 1 of the species with this radius */

@@ -11,5 +11,7 @@ void pair_rigid(struct check_run *run);         /* rigid motion feels no lubrica
 void pair_crowd(struct check_run *run);         /* many spheres in a strained or small box, against all images */
 void pair_drag(struct check_run *run);          /* one-body drag in many flows */
 void pair_units(struct check_run *run);         /* the same scene in other units */
+void pair_repulsion(struct check_run *run);     /* exponential repulsion and its cut-off */
+void pair_applied(struct check_run *run);       /* constant forces and torques by species */
 
 #endif

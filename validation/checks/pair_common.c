@@ -82,6 +82,7 @@ bool model_read(struct check_run *run, const json_t *scene, struct model *m)
                                           .tangential_stiffness = scene_number(scene, "forces.contact.tangential_stiffness", 0),
                                           .friction = scene_number(scene, "forces.contact.friction", 0),
                                           .lever_at_contact = lever && strcmp(lever, "contact") == 0 };
+    model_read_laws(scene, m);
     if (m->species == 0 || !(m->volume > 0))
         check_garbage(run, "the scene of the case has no species or no box; this is a mistake in the suite");
     return m->species > 0 && m->volume > 0;
@@ -285,8 +286,15 @@ void expect_contact(const struct model *m, const struct pair_state *p, struct ex
     const double sizes = p->s[0].radius + p->s[1].radius;
     double n[3], distance;
     const double h = pair_geometry(p, n, &distance);
-    theory_contact_pair(&m->contact, p->s, p->with_history ? p->history : (const double[3]){ 0, 0, 0 }, &e->pair);
+    const double *history = p->with_history ? p->history : (const double[3]){ 0, 0, 0 };
     e->force_scale = m->contact.normal_stiffness * fmax(-h, 1e-3 * sizes);
+    if (m->has_laws) {
+        const struct theory_contact law = contact_between(m, p->s[0].radius, p->s[1].radius);
+        const double zeta = theory_normal_dashpot(&law) + law.tangential_damping * theory_reduced_mass(&law);
+        theory_contact_laws_pair(&law, p->s, history, &e->pair);
+        e->force_scale += zeta * (norm(p->s[0].u) + norm(p->s[1].u) + sizes * (norm(p->s[0].w) + norm(p->s[1].w)));
+    } else
+        theory_contact_pair(&m->contact, p->s, history, &e->pair);
     e->torque_scale = e->force_scale * sizes;
 }
 

@@ -39,6 +39,18 @@ static void add_histories(gsl_rng *random, const struct model *m, struct pair_bo
     }
 }
 
+/* Held and driven spheres have the velocity and spin of their species. */
+static void keep_motion(const struct model *m, size_t other, struct pair_state *p)
+{
+    for (int side = 0; side < 2; side++) {
+        const size_t kind = side ? other : 0;
+        for (int k = 0; k < 3 && m->driven[kind]; k++) {
+            p->s[side].u[k] = m->velocity[kind][k];
+            p->s[side].w[k] = m->spin[kind][k];
+        }
+    }
+}
+
 static void fill_book(struct check_run *run, const struct model *m, bool contact, struct pair_book *book)
 {
     double xi[64];
@@ -50,6 +62,9 @@ static void fill_book(struct check_run *run, const struct model *m, bool contact
         for (size_t g = 0; g < gaps; g++)
             for (int k = 0; k < repeats; k++) {
                 struct pair_state p = random_pair(random, m->radius[0], m->radius[b], xi[g]);
+                if (m->driven[0] && m->driven[b])
+                    continue;           /* no pair */
+                keep_motion(m, b, &p);
                 if (xi[g] == 0) /* exact touch, to the last bit: along an axis, from the origin */
                     for (int d = 0; d < 3; d++) {
                         p.s[0].x[d] = 0;
@@ -85,13 +100,13 @@ static void see_invariants(struct seen *s, const struct model *m, bool contact, 
     if (h > (contact ? 0 : 0.5 * sizes * m->lubrication.outer_gap))
         for (int side = 0; side < 2; side++)
             worst_see_vector(&s->range, own[side], (const double[6]){ 0 }, 6, 1, at);
-    if (contact) {
+    if (contact && !m->has_laws) {              /* other laws have another cap: judged by the model */
         const double normal = dot(own[0], n), cap = m->contact.friction * fabs(normal);
         double tangential = 0;
         for (int k = 0; k < 3; k++)
             tangential += pow(own[0][k] - normal * n[k], 2);
         worst_see(&s->cap, fmax(sqrt(tangential), cap), cap, e->force_scale, at);
-    } else {
+    } else if (!contact) {
         double power = 0, scale = 0;
         for (int side = 0; side < 2; side++) {
             power += dot(own[side], p->s[side].u) + dot(own[side] + 3, p->s[side].w);
@@ -120,7 +135,11 @@ static void see_model(struct seen *s, const struct model *m, bool contact, const
     worst_see_vector(&s->force, own[0], e->pair.force[0], 3, e->force_scale, at);
     for (int side = 0; side < 2; side++)
         worst_see_vector(&s->torque[side], own[side] + 3, e->pair.torque[side], 3, e->torque_scale, at);
-    if (contact)
+    if (contact && m->has_laws)
+        for (int k = 0; k < 3; k++)     /* from the force and torques expected */
+            residual[k] = e->pair.torque[0][k] + e->pair.torque[1][k]
+                          + r * (n[(k + 1) % 3] * e->pair.force[1][(k + 2) % 3] - n[(k + 2) % 3] * e->pair.force[1][(k + 1) % 3]);
+    else if (contact)
         theory_contact_torque_residual(&m->contact, p->s, p->with_history ? p->history : (const double[3]){ 0 }, residual);
     else
         theory_lubrication_torque_residual(&m->lubrication, p->s, residual);

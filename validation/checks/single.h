@@ -26,5 +26,6 @@ struct free_sphere free_sphere(const struct model *m);
 
 void check_langevin(struct check_run *run);
 void check_shear(struct check_run *run);
+void check_tether(struct check_run *run);
 
 #endif

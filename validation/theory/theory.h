@@ -17,7 +17,21 @@ struct theory_pair { double force[2][3], torque[2][3], stress[3][3]; };
 
 /* Model constants of Li (2026): what the candidate declares. */
 struct theory_lubrication { double viscosity, inner_gap, outer_gap; bool exact_rotation; };
-struct theory_contact { double normal_stiffness, tangential_stiffness, friction; bool lever_at_contact; };
+enum theory_law { THEORY_PLAIN, THEORY_CRITICAL, THEORY_SOFT, THEORY_SHIFTED, THEORY_BINARY };
+enum theory_load { THEORY_LOAD_SPRING, THEORY_LOAD_DAMPED, THEORY_LOAD_ABSOLUTE };     /* the normal force that friction feels */
+struct theory_contact {
+    double normal_stiffness, tangential_stiffness, friction;
+    bool lever_at_contact;
+    /* What follows may be left zero: no dashpot, plain Coulomb friction. */
+    enum theory_law law;
+    double critical_load;
+    bool rough[2];
+    double normal_damping, tangential_damping, restitution;     /* gamma_n, gamma_t [1/T], or e in place of gamma_n */
+    bool clip;                                                  /* no tension */
+    enum theory_load load;
+    double mass[2];                                             /* infinite: held or driven */
+};
+struct theory_repulsion { bool by_energy; double strength, kappa_factor, cutoff; };
 
 /*
  * The pair resistance scalars of the truncated model at dimensionless gap xi: 0 X_A, 1 Y_A, 2 B_1, 3 B_2, 4 C_11, 5 C_12, 6 C_22.
@@ -36,6 +50,29 @@ void theory_lubrication_pair(const struct theory_lubrication *law, const struct 
 /* Linear spring with tangential history (displacement of surface 1 relative to 2) and Coulomb cap, no time passing. */
 void theory_contact_pair(const struct theory_contact *law, const struct theory_sphere s[2], const double history[3],
                          struct theory_pair *out);
+
+/* The same with dashpots and any friction law. Cap of the tangential force at a load; negative: no friction at all. */
+void theory_contact_laws_pair(const struct theory_contact *law, const struct theory_sphere s[2], const double history[3],
+                              struct theory_pair *out);
+double theory_friction_cap(const struct theory_contact *law, double load);
+bool theory_contact_grips(const struct theory_contact *law, double overlap, double opening);  /* is there friction at all */
+double theory_reduced_mass(const struct theory_contact *law);
+double theory_normal_dashpot(const struct theory_contact *law);
+/* Speed ratio of a head-on collision with damping ratio b = zeta/(2 sqrt(m k)), tension allowed or clipped; and back. */
+double theory_restitution(double b, bool clip);
+double theory_damping_ratio(double restitution, bool clip);
+
+/* Exponential repulsion, and its potential. */
+void theory_repulsion_pair(const struct theory_repulsion *law, const struct theory_sphere s[2], struct theory_pair *out);
+double theory_repulsion_energy(const struct theory_repulsion *law, double a1, double a2, double gap);
+
+/* Head-on collision: speed ratio, and the time from touch to where the free flight afterwards passes zero overlap. */
+void theory_head_on(const struct theory_contact *law, double *restitution, double *duration);
+/* Tangential impulse of gross sliding over (mu times the closing speed) [M]. */
+double theory_sliding_impulse(const struct theory_contact *law);
+/* Any collision that does not slide, friction being there or not, from touch at time 0, integrated to 1e-13 (lever and history as declared). */
+struct theory_collision { const struct theory_contact *law; struct theory_sphere start[2]; };
+bool theory_collide(struct theory_collision *c, double t, struct theory_sphere now[2]);
 
 /* Stokes drag on one sphere in the flow U_inf = G x, G[a][b] = dU_a/dx_b; force, torque, stresslet (20/3) pi eta a^3 E. */
 void theory_drag(double viscosity, bool with_torque, const double G[3][3], const struct theory_sphere *s,
