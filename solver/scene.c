@@ -3,7 +3,6 @@
 #include "core/step_limit.h"
 #include "dynamics/dynamics.h"
 #include "forces/forces.h"
-#include "observers/observers.h"
 #include "protocols/protocols.h"
 
 #include <stdlib.h>
@@ -25,9 +24,6 @@ static const struct force_row {
 };
 
 static const struct dynamics *const dynamics_rows[] = { &verlet };
-
-static const struct observer_row { const char *key; struct observer *(*make)(struct settings *s, struct suspension *of, struct error *e); }
-observer_rows[] = { { "stress", stress_table_new }, { "states", trajectory_new }, { "dump", dump_new } };
 
 /* ---- the parts of a scene ---- */
 
@@ -152,19 +148,6 @@ static bool build_run(struct settings *root, struct simulation *sim, struct erro
     return settings_done(&run, e);
 }
 
-static bool build_output(struct settings *root, struct simulation *sim, struct error *e)
-{
-    struct settings output = settings_child(root, "output", e);
-    for (size_t k = 0; k < sizeof observer_rows / sizeof *observer_rows && output.node; k++) {
-        struct settings part = settings_child(&output, observer_rows[k].key, e);
-        if (!part.node || error_raised(e))
-            continue;
-        sim->observer[sim->observer_count++] = observer_rows[k].make(&part, &sim->suspension, e);
-        settings_done(&part, e);
-    }
-    return settings_done(&output, e);
-}
-
 /* ---- all together ---- */
 
 static bool build_key(struct settings *root, struct suspension *s, struct error *e)
@@ -189,7 +172,7 @@ static bool build(struct settings *root, const char *path, const struct scene_op
     settings_has(root, "run"), settings_has(root, "output"), settings_has(root, "$schema");
     return build_fluid(root, s, e) && build_key(root, s, e) && build_box(root, s, e) && build_species(root, &s->particles, e) &&
            build_forces(root, s, e) && build_dynamics(root, sim, &chosen, e) && suspension_start(root, path, options->states, s, e) &&
-           choose_step(&chosen, s, e) && (options->frozen || (build_run(root, sim, e) && build_output(root, sim, e))) &&
+           choose_step(&chosen, s, e) && (options->frozen || (build_run(root, sim, e) && outputs_build(root, sim, e))) &&
            settings_done(root, e) && (options->states || neighbours_start(&s->neighbours, &s->box, &s->particles, e));
 }
 

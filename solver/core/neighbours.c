@@ -108,6 +108,7 @@ static bool offsets_new(struct neighbours *n, const struct box *box, const int s
     if (!table)
         return error_out_of_memory(e);
     n->offset = table;
+    memset(table, 0, (size_t)n->offset_count * sizeof *table);      /* padding too: checkpoints hold the bytes */
     for (int k = 0; k < n->offset_count; k++) {
         const int x = 2 * span[0] + 1, y = 2 * span[1] + 1;
         const int shift[3] = { k % x - span[0], k / x % y - span[1], k / (x * y) - span[2] };

@@ -41,6 +41,11 @@ static bool stress_table_observe(struct observer *self, const struct suspension 
     return table_check(&o->table, e);
 }
 
+static void stress_table_remember(struct observer *self, struct fields *f)
+{
+    table_remember(&((struct stress_table *)self)->table, "stress.csv", f);
+}
+
 static bool stress_table_close(struct observer *self, struct error *e)
 {
     const bool good = table_close(&((struct stress_table *)self)->table, e);
@@ -55,7 +60,7 @@ struct observer *stress_table_new(struct settings *s, struct suspension *of, str
     if (!o)
         return error_out_of_memory(e), NULL;
     o->base = (struct observer){ .measures = true, .open = stress_table_open, .observe = stress_table_observe,
-                                 .close = stress_table_close };
+                                 .remember = stress_table_remember, .close = stress_table_close };
     o->base.every = settings_whole(s, "every", 1, INT64_MAX, e);
     for (int k = 0; k < 9; k++)
         if (fabs(of->box.gradient.m[k / 3][k % 3]) == of->box.rate && of->box.rate > 0.0) {

@@ -33,6 +33,11 @@ static bool trajectory_observe(struct observer *self, const struct suspension *s
     return table_check(t, e);
 }
 
+static void trajectory_remember(struct observer *self, struct fields *f)
+{
+    table_remember(&((struct trajectory *)self)->table, "trajectory.csv", f);
+}
+
 static bool trajectory_close(struct observer *self, struct error *e)
 {
     const bool good = table_close(&((struct trajectory *)self)->table, e);
@@ -65,7 +70,7 @@ struct observer *trajectory_new(struct settings *s, struct suspension *of, struc
     struct trajectory *o = calloc(1, sizeof *o);
     if (!o)
         return error_out_of_memory(e), NULL;
-    o->base = (struct observer){ .open = trajectory_open, .observe = trajectory_observe, .close = trajectory_close };
+    o->base = (struct observer){ .open = trajectory_open, .observe = trajectory_observe, .remember = trajectory_remember, .close = trajectory_close };
     if (settings_has(s, "at"))
         read_steps(s, &o->base, e);
     else

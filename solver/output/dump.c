@@ -38,6 +38,11 @@ static bool dump_observe(struct observer *self, const struct suspension *s, stru
     return table_check(t, e);
 }
 
+static void dump_remember(struct observer *self, struct fields *f)
+{
+    table_remember(&((struct dump *)self)->table, "dump.lammpstrj", f);
+}
+
 static bool dump_close(struct observer *self, struct error *e)
 {
     const bool good = table_close(&((struct dump *)self)->table, e);
@@ -51,7 +56,7 @@ struct observer *dump_new(struct settings *s, struct suspension *of, struct erro
     struct dump *d = calloc(1, sizeof *d);
     if (!d)
         return error_out_of_memory(e), NULL;
-    d->base = (struct observer){ .open = dump_open, .observe = dump_observe, .close = dump_close };
+    d->base = (struct observer){ .open = dump_open, .observe = dump_observe, .remember = dump_remember, .close = dump_close };
     d->base.every = settings_whole(s, "every", 1, INT64_MAX, e);
     const mat3 *G = &of->box.gradient, *H = &of->box.start;
     if (!error_raised(e) && (G->m[1][0] != 0.0 || G->m[2][0] != 0.0 || G->m[2][1] != 0.0 || H->m[1][0] != 0.0 || H->m[2][0] != 0.0 || H->m[2][1] != 0.0))
