@@ -1,5 +1,6 @@
 /*
- * What a run writes: every observer, in the order in which they look, and the checkpoint, which comes after all of them.
+ * How long a run lasts, and what it writes: every observer, in the order in which they look, and the checkpoint, which
+ * comes after all of them.
  */
 #include "observers/observers.h"
 #include "scene.h"
@@ -10,6 +11,28 @@ observer_rows[] = {
     { "states", trajectory_new },
     { "dump", dump_new },
 };
+
+bool run_build(struct settings *root, struct simulation *sim, struct error *e)
+{
+    struct settings run = settings_child(root, "run", e);
+    const struct suspension *s = &sim->suspension;
+    double duration = 0.0;
+    if (!run.node)
+        return error_raise(e, ERROR_INPUT, "run is missing; it must have steps, time or strain");
+    if (settings_has(&run, "steps"))
+        sim->last_step = settings_whole(&run, "steps", 0, INT64_C(1) << 47, e);
+    else if (settings_has(&run, "strain")) {
+        duration = settings_at_least(&run, "strain", 0.0, e) / s->box.rate;
+        if (!(s->box.rate > 0.0) || s->box.flow)
+            settings_refuse(&run, "strain", e, "needs a steady shear");
+    } else if (settings_is_text(&run, "time", "stages") && s->box.flow)
+        duration = fmax(0.0, s->box.flow->duration - s->start_time);
+    else
+        duration = settings_at_least(&run, "time", 0.0, e);
+    if (duration > 0.0 && !error_raised(e))
+        sim->last_step = (int64_t)ceil(duration / s->dt * (1.0 - 1e-12));
+    return settings_done(&run, e);
+}
 
 bool outputs_build(struct settings *root, struct simulation *sim, struct error *e)
 {

@@ -56,8 +56,7 @@ static bool build_box(struct settings *root, struct suspension *s, struct error 
     }
     settings_flags(&box, "periodic", periodic, 3, e);
     settings_done(&box, e);
-    const mat3 gradient = steady_shear(root, e);
-    return !error_raised(e) && box_new(&s->box, &cell, periodic, &gradient, e);
+    return !error_raised(e) && driven_box(root, s, &cell, periodic, e);
 }
 
 static bool build_species(struct settings *root, struct particles *p, struct error *e)
@@ -128,26 +127,6 @@ static bool choose_step(struct settings *chosen, struct suspension *s, struct er
     return settings_done(chosen, e);
 }
 
-static bool build_run(struct settings *root, struct simulation *sim, struct error *e)
-{
-    struct settings run = settings_child(root, "run", e);
-    const struct suspension *s = &sim->suspension;
-    double duration = 0.0;
-    if (!run.node)
-        return error_raise(e, ERROR_INPUT, "run is missing; it must have steps, time or strain");
-    if (settings_has(&run, "steps"))
-        sim->last_step = settings_whole(&run, "steps", 0, INT64_C(1) << 47, e);
-    else if (settings_has(&run, "strain")) {
-        duration = settings_at_least(&run, "strain", 0.0, e) / s->box.rate;
-        if (!(s->box.rate > 0.0))
-            settings_refuse(&run, "strain", e, "needs a shear");
-    } else
-        duration = settings_at_least(&run, "time", 0.0, e);
-    if (duration > 0.0 && !error_raised(e))
-        sim->last_step = (int64_t)ceil(duration / s->dt * (1.0 - 1e-12));
-    return settings_done(&run, e);
-}
-
 /* ---- all together ---- */
 
 static bool build_key(struct settings *root, struct suspension *s, struct error *e)
@@ -172,7 +151,7 @@ static bool build(struct settings *root, const char *path, const struct scene_op
     settings_has(root, "run"), settings_has(root, "output"), settings_has(root, "$schema");
     return build_fluid(root, s, e) && build_key(root, s, e) && build_box(root, s, e) && build_species(root, &s->particles, e) &&
            build_forces(root, s, e) && build_dynamics(root, sim, &chosen, e) && suspension_start(root, path, options->states, s, e) &&
-           choose_step(&chosen, s, e) && (options->frozen || (build_run(root, sim, e) && outputs_build(root, sim, e))) &&
+           choose_step(&chosen, s, e) && (options->frozen || (run_build(root, sim, e) && outputs_build(root, sim, e))) &&
            settings_done(root, e) && (options->states || neighbours_start(&s->neighbours, &s->box, &s->particles, e));
 }
 

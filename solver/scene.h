@@ -13,7 +13,8 @@ struct scene_options {
     bool frozen;                                /* only forces will be asked for: no run, no outputs, no step limit */
 };
 
-/* The observers and the checkpoint that the scene's `output` names: outputs.c. */
+/* How long the scene runs, and the observers and the checkpoint that its `output` names: outputs.c. */
+bool run_build(struct settings *root, struct simulation *sim, struct error *e);
 bool outputs_build(struct settings *root, struct simulation *sim, struct error *e);
 
 /* Builds what the scene at `path` names. On failure nothing has been written anywhere. */

@@ -18,6 +18,8 @@ static json_t *look_up(struct settings *s, const char *key)
     return json_object_get(s->node, key);
 }
 
+bool settings_is_number(struct settings *s, const char *key) { return json_is_number(look_up(s, key)); }
+
 bool settings_is_text(struct settings *s, const char *key, const char *text)
 {
     const json_t *value = look_up(s, key);

@@ -50,20 +50,25 @@ static void make_folder(void)
     check_true(out && fputs(scene, out) >= 0 && fclose(out) == 0, "scene");
 }
 
-/* Runs the scene into `out` with one replacement (NULL: none), from the start or from the checkpoint there. */
-static int run(const char *set, const char *out, bool resume, struct error *e)
+static int run_as(const struct scene_options *options, const char *out, struct error *e)
 {
     struct simulation *sim = calloc(1, sizeof *sim);
-    const struct scene_options options = { .set = &set, .set_count = set != NULL, .resume = resume };
     memset(e, 0, sizeof *e);
-    if (scene_build(scene_path, &options, sim, e) && simulation_begin(sim, e)) {
-        sim->destination.resuming = resume;
+    if (scene_build(scene_path, options, sim, e) && simulation_begin(sim, e)) {
+        sim->destination.resuming = options->resume;
         if (destination_make(&sim->destination, out, e))
             simulation_run(sim, e);
     }
     simulation_close(sim, e);
     free(sim);
     return e->code;
+}
+
+/* Runs the scene into `out` with one replacement (NULL: none), from the start or from the checkpoint there. */
+static int run(const char *set, const char *out, bool resume, struct error *e)
+{
+    const struct scene_options options = { .set = &set, .set_count = set != NULL, .resume = resume };
+    return run_as(&options, out, e);
 }
 
 static char *contents(const char *path, size_t *size)
@@ -140,6 +145,24 @@ static void the_run_has_remaps_and_lists(void)
     check_true(rubbing > 3, "frictional contacts");
     simulation_close(sim, &e);
     free(sim);
+}
+
+/* One flow along two gradients, one oscillating, one that jumps: the box's state follows from the time alone. */
+static void staged_runs_go_on(void)
+{
+    static const char *const set[] = {
+        "shear=[]", "start.time=0",
+        "stages=[{\"duration\":0.005,\"shear\":[{\"flow\":\"x\",\"gradient\":\"y\",\"rate\":-30},{\"flow\":\"x\",\"gradient\":\"z\","
+        "\"rate\":{\"mean\":5,\"amplitude\":20,\"angular_frequency\":700,\"phase\":0.4}}]},"
+        "{\"strain\":0.4,\"shear\":[{\"flow\":\"x\",\"gradient\":\"y\",\"rate\":30}]}]",
+        "run.steps=210" };
+    struct error e;
+    const struct scene_options first = { .set = set, .set_count = 3 }, part = { .set = set, .set_count = 4 };
+    const struct scene_options rest = { .set = set, .set_count = 3, .resume = true };
+    make_folder();
+    check_true(run_as(&first, in_folder("staged"), &e) == 0, e.text);
+    check_true(run_as(&part, in_folder("staged-split"), &e) == 0 && run_as(&rest, in_folder("staged-split"), &e) == 0, e.text);
+    check_same(in_folder("staged"), in_folder("staged-split"), "stages");
 }
 
 static void interrupted_runs_go_on(void)
@@ -239,6 +262,7 @@ static void doubtful_checkpoints_are_refused(void)
 static const struct unit_test tests[] = {
     { "the run has remaps, lists and frictional contacts", the_run_has_remaps_and_lists },
     { "a run split in two is the whole run", split_runs_are_the_whole },
+    { "a run in stages goes on", staged_runs_go_on },
     { "interrupted runs go on", interrupted_runs_go_on },
     { "killed runs go on", killed_runs_go_on },
     { "doubtful checkpoints are refused", doubtful_checkpoints_are_refused },

@@ -38,7 +38,7 @@ static bool outdated(const struct neighbours *n, const struct box *box, const st
 {
     if (n->made == 0 || box_wants_remap(box))
         return true;
-    const mat3 F = box_deformation(box, box->time - n->listed_time);
+    const mat3 F = box_deformation(box, n->listed_time, box->time);
     double shear = 0.0;
     for (int k = 0; k < 9; k++)
         shear += (F.m[k / 3][k % 3] - (k % 4 == 0)) * (F.m[k / 3][k % 3] - (k % 4 == 0));

@@ -28,6 +28,7 @@ uint64_t settings_fingerprint(const struct settings *root);
 void settings_unload(struct settings *root);
 
 bool settings_has(struct settings *s, const char *key);
+bool settings_is_number(struct settings *s, const char *key);
 bool settings_is_text(struct settings *s, const char *key, const char *text);
 double settings_number(struct settings *s, const char *key, struct error *e);
 double settings_positive(struct settings *s, const char *key, struct error *e);
