@@ -10,6 +10,15 @@ observer_rows[] = {
     { "stress", stress_table_new },
     { "states", trajectory_new },
     { "dump", dump_new },
+    { "viscosity", viscosity_new },
+    { "contacts", contacts_new },
+    { "temperature", temperature_new },
+    { "displacement", displacement_new },
+    { "velocity_correlation", velocity_correlation_new },
+    { "pair_distribution", pair_distribution_new },
+    { "brownian_stress", brownian_stress_new },
+    { "green_kubo", green_kubo_new },
+    { "averages", averages_new },
 };
 
 bool run_build(struct settings *root, struct simulation *sim, struct error *e)

@@ -12,10 +12,11 @@
 #include <string.h>
 
 extern const struct suite box_suite, packing_suite, force_suite, scene_suite, theory_suite, theory_motion_suite, statistics_suite, tables_suite,
-    gate_suite, checkpoint_suite, stages_suite;
+    gate_suite, checkpoint_suite, stages_suite, observers_suite, blocks_suite;
 
 static const struct suite *const suites[] = { &box_suite, &packing_suite, &force_suite, &scene_suite, &theory_suite, &theory_motion_suite,
-                                              &statistics_suite, &tables_suite, &gate_suite, &checkpoint_suite, &stages_suite };
+                                              &statistics_suite, &tables_suite, &gate_suite, &checkpoint_suite, &stages_suite,
+                                              &observers_suite, &blocks_suite };
 
 void check_close(double measured, double expected, double tolerance, const char *what)
 {
