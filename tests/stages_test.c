@@ -54,6 +54,7 @@ static void strain_is_the_integral_of_the_rate(void)
     if (!flow)
         return;
     const double first = 1.3, second = first + 0.75, third = second + 0.4;
+    check_true(flow->flow_axis == 0 && flow->gradient_axis == 1, "the plane of the first shear");
     check_close(flow->duration, third + 2.9, 1e-14, "strain 0.9 at rate -1.2 lasts 0.75");
     check_close((double)sim->last_step, ceil((third + 2.9) / 0.001), 0, "run until the last stage ends");
     double xy = 0.0, zy = 0.0, way = 0.0;

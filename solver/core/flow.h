@@ -13,6 +13,7 @@
 
 struct flow {
     mat3 largest;                                               /* of |G|, entry by entry, over all times [1/T] */
+    int flow_axis, gradient_axis;                               /* of the first shear that is named: the plane that tables speak of */
     double duration;                                            /* from then on the flow is at rest [T] */
     mat3 (*gradient)(const struct flow *self, double time);     /* G(t) */
     mat3 (*strain)(const struct flow *self, double time);       /* S(t), in closed form */

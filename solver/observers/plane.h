@@ -1,7 +1,7 @@
 /*
  * The plane of shear and what is read off a stress in it
  *
- *     f flow, g gradient, v vorticity axis of the fastest shear (x, y, z at rest)
+ *     f flow, g gradient, v vorticity axis of the fastest shear, in stages of the first that is named (x, y, z at rest)
  *     shear  (sigma_fg + sigma_gf)/2     N1 = sigma_ff - sigma_gg     N2 = sigma_gg - sigma_vv     pressure = -tr/3
  *
  * The sum over origins leaves out the kinetic part (bookkept, not part of the model's viscosity) and the
@@ -20,11 +20,13 @@ static inline struct plane plane_of(const struct box *b)
 {
     struct plane p = { 0, 1, 2, 0.0 };
     double largest = 0.0;
+    if (b->flow && b->flow->flow_axis != b->flow->gradient_axis)
+        return (struct plane){ b->flow->flow_axis, b->flow->gradient_axis, 3 - b->flow->flow_axis - b->flow->gradient_axis, 0.0 };
     for (int k = 0; k < 9; k++) {
-        const double rate = b->flow ? b->flow->largest.m[k / 3][k % 3] : b->gradient.m[k / 3][k % 3];
-        if (fabs(rate) > largest) {
+        const double rate = b->gradient.m[k / 3][k % 3];
+        if (!b->flow && fabs(rate) > largest) {
             largest = fabs(rate);
-            p = (struct plane){ k / 3, k % 3, 3 - k / 3 - k % 3, b->flow ? 0.0 : rate };
+            p = (struct plane){ k / 3, k % 3, 3 - k / 3 - k % 3, rate };
         }
     }
     return p;

@@ -188,7 +188,12 @@ struct flow *stages_new(struct settings *root, struct error *e)
         struct settings one = settings_item(root, "stages", k, e);
         all->stage[all->count].begin = all->base.duration;
         read_stage(&one, &all->stage[all->count], &all->base, e);
-        all->base.duration += all->stage[all->count++].duration;
+        const struct stage *at = &all->stage[all->count++];
+        all->base.duration += at->duration;
+        if (at->laws > 0 && all->base.flow_axis == all->base.gradient_axis) {
+            all->base.flow_axis = at->law[0].flow;
+            all->base.gradient_axis = at->law[0].gradient;
+        }
     }
     for (int axis = 0; axis < 3; axis++) {
         double flows = 0.0, varies = 0.0;
