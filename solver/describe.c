@@ -37,7 +37,8 @@ void describe_scene(const struct simulation *sim, struct error *e)
     if (s->box.rate > 0)
         printf("  shear 1/rate %.4g", 1.0 / s->box.rate);
     printf("\nstep        dt %.6g, limit %.6g (set by %s), advised %.3g\nrun         %lld steps, time %.6g, strain %.6g\n", s->dt, limit.dt,
-           limit.force, step_advised(s), (long long)sim->last_step, (double)sim->last_step * s->dt, (double)sim->last_step * s->dt * s->box.rate);
+           limit.force, step_advised(s), (long long)sim->last_step, (double)sim->last_step * s->dt, 
+           box_strain(&s->box, s->start_time, s->start_time + (double)sim->last_step * s->dt));
 }
 
 void describe_provenance(struct simulation *sim, const char *scene, const struct scene_options *options)

@@ -126,7 +126,7 @@ static bool evaluate_state(struct simulation *sim, const struct state_file *stat
 
 static bool evaluate_forces(struct simulation *sim, const struct state_file *states, const struct contacts *contacts, struct error *e)
 {
-    struct table forces = { NULL, "" }, stresses = { NULL, "" };
+    struct table forces = { .file = NULL }, stresses = { .file = NULL };
     if (table_open(&forces, &sim->destination, "forces.csv", e) && table_open(&stresses, &sim->destination, "stress.csv", e)) {
         fputs("state,force,id,fx,fy,fz,tx,ty,tz\n", forces.file);
         fputs("state", stresses.file);
@@ -161,7 +161,7 @@ static bool evaluate_noise(struct simulation *sim, const struct state_file *stat
             act_alone(s->force[k], s, 0, NULL);
     for (int k = 0; k < s->force_count && !error_raised(e); k++) {
         char name[80];
-        struct table t = { NULL, "" };
+        struct table t = { .file = NULL };
         if (s->force[k]->kind != NOISE)
             continue;
         snprintf(name, sizeof name, "noise_%s.npy", s->force[k]->name);

@@ -1,9 +1,7 @@
 #include "scene.h"
 
-#include "core/step_limit.h"
 #include "dynamics/dynamics.h"
 #include "forces/forces.h"
-#include "observers/observers.h"
 #include "protocols/protocols.h"
 
 #include <stdlib.h>
@@ -26,11 +24,6 @@ static const struct force_row {
     { "drag_noise", drag_noise_new, true, NULL },
     { "lubrication_noise", lubrication_noise_new, true, NULL },
 };
-
-static const struct dynamics *const dynamics_rows[] = { &verlet, &predicted_verlet, &split };
-
-static const struct observer_row { const char *key; struct observer *(*make)(struct settings *s, struct suspension *of, struct error *e); }
-observer_rows[] = { { "stress", stress_table_new }, { "states", trajectory_new }, { "dump", dump_new } };
 
 /* ---- the parts of a scene ---- */
 
@@ -63,8 +56,7 @@ static bool build_box(struct settings *root, struct suspension *s, struct error 
     }
     settings_flags(&box, "periodic", periodic, 3, e);
     settings_done(&box, e);
-    const mat3 gradient = steady_shear(root, e);
-    return !error_raised(e) && box_new(&s->box, &cell, periodic, &gradient, e);
+    return !error_raised(e) && driven_box(root, s, &cell, periodic, e);
 }
 
 static bool build_species(struct settings *root, struct particles *p, struct error *e)
@@ -107,75 +99,6 @@ static bool build_forces(struct settings *root, struct suspension *s, struct err
     return settings_done(&forces, e);
 }
 
-static bool build_dynamics(struct settings *root, struct simulation *sim, struct settings *chosen, struct error *e)
-{
-    static const char *const rotations[] = { "auto", "on", "off", NULL };
-    struct settings dynamics = settings_child(root, "dynamics", e);
-    for (size_t k = 0; k < sizeof dynamics_rows / sizeof *dynamics_rows && dynamics.node; k++)
-        if (settings_has(&dynamics, dynamics_rows[k]->name)) {
-            sim->dynamics = dynamics_rows[k];
-            *chosen = settings_child(&dynamics, dynamics_rows[k]->name, e);
-        }
-    if (settings_has(&dynamics, "auto")) {      /* noise on lubricated pairs biases explicit schemes: docs/integrators.md */
-        sim->dynamics = sim->suspension.kT > 0.0 && suspension_force(&sim->suspension, "lubrication") ? &split : &verlet;
-        *chosen = settings_child(&dynamics, "auto", e);
-    }
-    if (settings_done(&dynamics, e) && !chosen->node)
-        error_raise(e, ERROR_INPUT, "dynamics must name one equation of motion: verlet, predicted_verlet or split");
-    const int rotation = settings_has(chosen, "rotation") ? settings_choice(chosen, "rotation", rotations, e) : 0;
-    if (rotation == 2 && sim->suspension.rotates)
-        settings_refuse(chosen, "rotation", e, "must be \"auto\" or \"on\": a force of this scene turns particles");
-    sim->suspension.rotates = sim->suspension.rotates || rotation == 1;
-    sim->suspension.implicit_friction = sim->dynamics && !sim->dynamics->explicit_friction;
-    if (sim->suspension.implicit_friction)
-        sim->suspension.friction_residual = settings_number_or(chosen, "residual", 1e-10, e);
-    return !error_raised(e);
-}
-
-static bool choose_step(struct settings *chosen, struct suspension *s, struct error *e)
-{
-    if (settings_is_text(chosen, "dt", "auto")) {
-        s->dt = step_advised(s);
-        if (!isfinite(s->dt))
-            settings_refuse(chosen, "dt", e, "but nothing in this scene sets a time scale; give a number");
-    } else
-        s->dt = settings_positive(chosen, "dt", e);
-    return settings_done(chosen, e);
-}
-
-static bool build_run(struct settings *root, struct simulation *sim, struct error *e)
-{
-    struct settings run = settings_child(root, "run", e);
-    const struct suspension *s = &sim->suspension;
-    double duration = 0.0;
-    if (!run.node)
-        return error_raise(e, ERROR_INPUT, "run is missing; it must have steps, time or strain");
-    if (settings_has(&run, "steps"))
-        sim->last_step = settings_whole(&run, "steps", 0, INT64_C(1) << 47, e);
-    else if (settings_has(&run, "strain")) {
-        duration = settings_at_least(&run, "strain", 0.0, e) / s->box.rate;
-        if (!(s->box.rate > 0.0))
-            settings_refuse(&run, "strain", e, "needs a shear");
-    } else
-        duration = settings_at_least(&run, "time", 0.0, e);
-    if (duration > 0.0 && !error_raised(e))
-        sim->last_step = (int64_t)ceil(duration / s->dt * (1.0 - 1e-12));
-    return settings_done(&run, e);
-}
-
-static bool build_output(struct settings *root, struct simulation *sim, struct error *e)
-{
-    struct settings output = settings_child(root, "output", e);
-    for (size_t k = 0; k < sizeof observer_rows / sizeof *observer_rows && output.node; k++) {
-        struct settings part = settings_child(&output, observer_rows[k].key, e);
-        if (!part.node || error_raised(e))
-            continue;
-        sim->observer[sim->observer_count++] = observer_rows[k].make(&part, &sim->suspension, e);
-        settings_done(&part, e);
-    }
-    return settings_done(&output, e);
-}
-
 /* ---- all together ---- */
 
 static bool build_key(struct settings *root, struct suspension *s, struct error *e)
@@ -197,8 +120,8 @@ static bool build(struct settings *root, const char *path, const struct scene_op
     /* Keys that are known also where only forces are asked for; the schema is for editors. */
     settings_has(root, "run"), settings_has(root, "output"), settings_has(root, "$schema");
     return build_fluid(root, s, e) && build_key(root, s, e) && build_box(root, s, e) && build_species(root, &s->particles, e) &&
-           build_forces(root, s, e) && build_dynamics(root, sim, &chosen, e) && suspension_start(root, path, options->states, s, e) &&
-           choose_step(&chosen, s, e) && (options->frozen || (build_run(root, sim, e) && build_output(root, sim, e))) &&
+           build_forces(root, s, e) && dynamics_choose(root, s, &sim->dynamics, &chosen, e) && suspension_start(root, path, options->states, s, e) &&
+           step_choose(&chosen, s, e) && (options->frozen || (run_build(root, sim, e) && outputs_build(root, sim, e))) &&
            settings_done(root, e) && (options->states || neighbours_start(&s->neighbours, &s->box, &s->particles, e));
 }
 

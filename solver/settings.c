@@ -18,6 +18,8 @@ static json_t *look_up(struct settings *s, const char *key)
     return json_object_get(s->node, key);
 }
 
+bool settings_is_number(struct settings *s, const char *key) { return json_is_number(look_up(s, key)); }
+
 bool settings_is_text(struct settings *s, const char *key, const char *text)
 {
     const json_t *value = look_up(s, key);
@@ -311,4 +313,19 @@ void settings_unload(struct settings *root)
 {
     json_decref((json_t *)(uintptr_t)root->node);
     root->node = NULL;
+}
+
+/* Of the text with sorted keys and 17 digits: FNV-1a, 64 bits (Fowler, Noll & Vo 1991). */
+uint64_t settings_fingerprint(const struct settings *root)
+{
+    uint64_t hash = UINT64_C(14695981039346656037);
+    json_t *rest = json_deep_copy((json_t *)(uintptr_t)root->node);
+    json_object_del(rest, "run");
+    json_object_del(json_object_get(rest, "output"), "checkpoint");
+    char *text = json_dumps(rest, JSON_SORT_KEYS | JSON_COMPACT | JSON_REAL_PRECISION(17));
+    for (const char *c = text; c && *c; c++)
+        hash = (hash ^ (unsigned char)*c) * UINT64_C(1099511628211);
+    free(text);
+    json_decref(rest);
+    return hash;
 }

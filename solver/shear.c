@@ -9,7 +9,7 @@
 #include <string.h>
 
 static const char usage[] =
-    "usage: shear SCENE.json [-o DIR] [--set path=value ...] [--check]\n"
+    "usage: shear SCENE.json [-o DIR] [--set path=value ...] [--check] [--resume]\n"
     "       shear --evaluate CASE_DIR OUT_DIR\n"
     "       shear --help | --version\n"
     "\n"
@@ -19,9 +19,10 @@ static const char usage[] =
     "  -o DIR             where to write; made if it is not there\n"
     "  --set path=value   replace one value of the scene, such as --set fluid.kT=0 or --set species[0].radius=1.3\n"
     "  --check            say what would be built, its time scales and its step limit, and stop\n"
+    "  --resume           go on from the checkpoint in DIR, bit for bit (Ctrl-C writes one)\n"
     "  --evaluate         a case of the gate: frozen states in, forces, torques and stresses out; or noise draws; or a run\n"
     "\n"
-    "Exit codes: 0 done, 1 the run failed, 2 the input is wrong, 77 not supported.\n"
+    "Exit codes: 0 done, 1 the run failed, 2 the input is wrong, 77 not supported, 130 interrupted.\n"
     "Formats: docs/formats.md.\n";
 
 static void run_scene(const char *scene, const char *folder, const struct scene_options *options, bool check, struct error *e)
@@ -33,7 +34,9 @@ static void run_scene(const char *scene, const char *folder, const struct scene_
     if (built && simulation_begin(sim, e) && !check) {
         describe_bias(sim);
         describe_provenance(sim, scene, options);
-        if (sim->observer_count == 0 || destination_make(&sim->destination, folder, e))
+        checkpoint_watch();
+        sim->destination.resuming = options->resume;
+        if ((sim->observer_count == 0 && !sim->checkpoint.every && !options->resume) || destination_make(&sim->destination, folder, e))
             simulation_run(sim, e);
     }
     simulation_close(sim, e);
@@ -57,6 +60,8 @@ int main(int argc, char **argv)
                 return printf("shear %s\n", SHEAR_VERSION) < 0;
             if (strcmp(argv[k], "--check") == 0)
                 check = true;
+            else if (strcmp(argv[k], "--resume") == 0)
+                options.resume = true;
             else if (strcmp(argv[k], "-o") == 0 && k + 1 < argc)
                 snprintf(folder, sizeof folder, "%s", argv[++k]);
             else if (strcmp(argv[k], "--set") == 0 && k + 1 < argc && options.set_count < 64)

@@ -59,10 +59,12 @@ bool simulation_run(struct simulation *sim, struct error *e)
 {
     struct suspension *s = &sim->suspension;
     bool relisted;
+    if (!checkpoint_read(&sim->checkpoint, e))
+        return false;
     for (int k = 0; k < sim->observer_count; k++)
         if (!sim->observer[k]->open(sim->observer[k], s, &sim->destination, e))
             return false;
-    if (!observe(sim, e))
+    if (sim->destination.resuming ? !checkpoint_apply(&sim->checkpoint, e) : !observe(sim, e))
         return false;
     progress_start(&sim->progress, s->step, sim->last_step);
     while (s->step < sim->last_step) {
@@ -70,6 +72,8 @@ bool simulation_run(struct simulation *sim, struct error *e)
         if (!sim->dynamics->step(sim->dynamics, s, &relisted, e) || !sound(sim, relisted, e) || !observe(sim, e))
             break;
         progress_show(&sim->progress, s);
+        if (!checkpoint_keep(&sim->checkpoint, s->step == sim->last_step, e))
+            break;
     }
     progress_end(&sim->progress);
     return !error_raised(e);
@@ -81,6 +85,7 @@ bool simulation_close(struct simulation *sim, struct error *e)
         sim->observer[k]->close(sim->observer[k], e);
     if (sim->dynamics && sim->dynamics->free)
         sim->dynamics->free(&sim->suspension);
+    checkpoint_free(&sim->checkpoint);
     suspension_free(&sim->suspension);
     return !error_raised(e);
 }

@@ -4,9 +4,10 @@
 
 #include "core/dynamics.h"
 #include "core/observer.h"
+#include "output/checkpoint.h"
 #include "output/output.h"
 
-enum { MAX_OBSERVERS = 8 };
+enum { MAX_OBSERVERS = 16 };
 
 struct simulation {
     char about[300];
@@ -15,6 +16,7 @@ struct simulation {
     struct observer *observer[MAX_OBSERVERS];
     int observer_count;
     struct destination destination;
+    struct checkpoint checkpoint;
     int64_t last_step;
     struct progress progress;
 };

@@ -168,7 +168,7 @@ static void wrapping_changes_no_physics(void)
             check_true(f.x > -1e-12 && f.x < 1 + 1e-12 && f.y > -1e-12 && f.y < 1 + 1e-12 && f.z > -1e-12 && f.z < 1 + 1e-12, "inside the cell");
         }
         for (int i = 0; i < 50; i++) {                              /* everything moves with the flow to a later time */
-            const mat3 F = box_deformation(&b, 1.7);
+            const mat3 F = box_deformation(&b, b.time, b.time + 1.7);
             p.position[i] = mat3_times(&F, p.position[i]);
             before[i] = mat3_times(&F, before[i]);
             p.velocity[i] = plus(peculiar[i], box_flow(&b, p.position[i]));

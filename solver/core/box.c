@@ -16,8 +16,20 @@ static mat3 inverse_of(const mat3 *H, double *determinant)
     return inverse;
 }
 
-mat3 box_deformation(const struct box *b, double duration)
+/* What follows from G. */
+static void set_gradient(struct box *b, const mat3 G)
 {
+    b->gradient = G;
+    for (int k = 0; k < 9; k++)
+        b->strain_rate.m[k / 3][k % 3] = 0.5 * (G.m[k / 3][k % 3] + G.m[k % 3][k / 3]);
+    b->spin = vec(0.5 * (G.m[2][1] - G.m[1][2]), 0.5 * (G.m[0][2] - G.m[2][0]), 0.5 * (G.m[1][0] - G.m[0][1]));
+}
+
+mat3 box_deformation(const struct box *b, double from, double to)
+{
+    if (b->flow)
+        return flow_deformation(b->flow, from, to);
+    const double duration = to - from;
     const mat3 GG = mat3_product(&b->gradient, &b->gradient);
     mat3 F;
     for (int r = 0; r < 3; r++)
@@ -31,7 +43,9 @@ void box_set_time(struct box *b, double time)
     b->time = time;
     if (!b->flowing)
         return;
-    const mat3 F = box_deformation(b, time);
+    if (b->flow)
+        set_gradient(b, b->flow->gradient(b->flow, time));
+    const mat3 F = box_deformation(b, 0.0, time);
     const mat3 unmapped = mat3_product(&F, &b->start);
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 3; c++)
@@ -44,7 +58,7 @@ bool box_new(struct box *b, const mat3 *cell, const bool periodic[3], const mat3
 {
     memset(b, 0, sizeof *b);
     b->start = b->cell = *cell;
-    b->gradient = *gradient;
+    set_gradient(b, *gradient);
     b->inverse = inverse_of(cell, &b->volume);
     if (!(b->volume > 0.0))
         return error_raise(e, ERROR_INPUT, "box: the cell has volume %g; its vectors must be right-handed and span space", b->volume);
@@ -65,10 +79,7 @@ bool box_new(struct box *b, const mat3 *cell, const bool periodic[3], const mat3
                                    "xyz"[r], "xyz"[c], "xyz"[r]);
             b->flowing = b->flowing || g != 0.0;
             b->rate = fmax(b->rate, fabs(g));
-            b->strain_rate.m[r][c] = 0.5 * (g + gradient->m[c][r]);
         }
-    b->spin = vec(0.5 * (gradient->m[2][1] - gradient->m[1][2]), 0.5 * (gradient->m[0][2] - gradient->m[2][0]),
-                  0.5 * (gradient->m[1][0] - gradient->m[0][1]));
     return true;
 }
 
@@ -116,7 +127,7 @@ void box_lattice_shift(const struct box *b, const int shift[3], int lattice_shif
 
 vec3 box_unwrapped(const struct box *b, const int image[3])
 {
-    const mat3 F = box_deformation(b, b->time);
+    const mat3 F = box_deformation(b, 0.0, b->time);
     return mat3_times(&F, mat3_times(&b->start, vec(image[0], image[1], image[2])));
 }
 

@@ -3,7 +3,8 @@
  *
  *     U_inf(x) = G x                background flow, G = dU/dx a superposition of simple shears
  *     H(t) = F(t) H(0) M            cell: columns A, B, C
- *     F(t) = I + G t + G G t^2 / 2  what the flow makes of a material line; exact, for such a G is nilpotent (G^3 = 0)
+ *     F(t) = I + G t + G G t^2 / 2  what the flow makes of a material line; exact, for such a G is nilpotent (G^3 = 0);
+ *                               of a flow that changes with time: core/flow.h
  *
  * M is an integer matrix of determinant one that picks the least tilted cell of the same lattice (remap): it labels
  * images anew and changes nothing else. F is computed from time 0, never accumulated.
@@ -15,12 +16,14 @@
 #define CORE_BOX_H
 
 #include "core/error.h"
+#include "core/flow.h"
 #include "core/particles.h"
 #include "core/vec3.h"
 
 struct box {
     mat3 start;                     /* H(0)              [L] */
     mat3 gradient;                  /* G                 [1/T] */
+    struct flow *flow;              /* G(t); NULL: steady */
     bool periodic[3];
     bool flowing;                   /* G is not zero */
     bool tilts[3][3];               /* [a][c]: edge c leans along axis a as time goes */
@@ -36,7 +39,8 @@ struct box {
 /* `cell` has the columns A, B, C at time 0. Refuses a flat or left-handed cell and a flow that is no set of simple shears. */
 bool box_new(struct box *b, const mat3 *cell, const bool periodic[3], const mat3 *gradient, struct error *e);
 void box_set_time(struct box *b, double time);
-mat3 box_deformation(const struct box *b, double duration);             /* F of a duration */
+mat3 box_deformation(const struct box *b, double from, double to);      /* F from one time to another */
+double box_strain(const struct box *b, double from, double to);         /* the integral of |rate| */
 bool box_wants_remap(const struct box *b);                              /* a tilt has passed half an edge */
 void box_remap(struct box *b);
 /* Puts particles back into the cell; where they cross a face their velocity becomes that of the image taken. */

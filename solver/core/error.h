@@ -7,7 +7,7 @@
 
 #include <stdbool.h>
 
-enum { ERROR_RUN = 1, ERROR_INPUT = 2, ERROR_UNSUPPORTED = 77 };      /* exit codes */
+enum { ERROR_RUN = 1, ERROR_INPUT = 2, ERROR_UNSUPPORTED = 77, ERROR_INTERRUPTED = 130 };      /* exit codes */
 
 struct error { int code; char text[600]; };
 

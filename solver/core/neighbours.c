@@ -38,7 +38,7 @@ static bool outdated(const struct neighbours *n, const struct box *box, const st
 {
     if (n->made == 0 || box_wants_remap(box))
         return true;
-    const mat3 F = box_deformation(box, box->time - n->listed_time);
+    const mat3 F = box_deformation(box, n->listed_time, box->time);
     double shear = 0.0;
     for (int k = 0; k < 9; k++)
         shear += (F.m[k / 3][k % 3] - (k % 4 == 0)) * (F.m[k / 3][k % 3] - (k % 4 == 0));
@@ -108,6 +108,7 @@ static bool offsets_new(struct neighbours *n, const struct box *box, const int s
     if (!table)
         return error_out_of_memory(e);
     n->offset = table;
+    memset(table, 0, (size_t)n->offset_count * sizeof *table);      /* padding too: checkpoints hold the bytes */
     for (int k = 0; k < n->offset_count; k++) {
         const int x = 2 * span[0] + 1, y = 2 * span[1] + 1;
         const int shift[3] = { k % x - span[0], k / x % y - span[1], k / (x * y) - span[2] };

@@ -6,10 +6,11 @@
 #ifndef CORE_OBSERVER_H
 #define CORE_OBSERVER_H
 
+#include "core/fields.h"
 #include "core/suspension.h"
 
-/* Where a run writes, and what it says of itself at the top of each file. */
-struct destination { char folder[400]; char provenance[1500]; };
+/* Where a run writes, what it says of itself at the top of each file, and whether it goes on with files that are there. */
+struct destination { char folder[400]; char provenance[1500]; bool resuming; };
 
 struct observer {
     int64_t every;                              /* due at every so many steps, step 0 included; 0: at the steps of `at` */
@@ -18,6 +19,7 @@ struct observer {
     bool measures;                              /* needs the stress of the evaluation just made */
     bool (*open)(struct observer *self, const struct suspension *s, const struct destination *to, struct error *e);
     bool (*observe)(struct observer *self, const struct suspension *s, struct error *e);
+    void (*remember)(struct observer *self, struct fields *f);  /* what a checkpoint must hold of it; NULL: nothing */
     bool (*close)(struct observer *self, struct error *e);      /* flushes and frees; false if anything was not written */
 };
 

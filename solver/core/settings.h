@@ -10,6 +10,8 @@
 #include "core/error.h"
 #include "core/vec3.h"
 
+#include <stdint.h>
+
 enum { SETTINGS_KEYS = 24 };
 
 struct settings {
@@ -21,9 +23,12 @@ struct settings {
 
 /* The root object of a file, with "path=value" replacements applied. */
 bool settings_load(struct settings *root, const char *path, const char *const *set, int set_count, struct error *e);
+/* A number for all that the scene says but how long to run and when to write checkpoints. */
+uint64_t settings_fingerprint(const struct settings *root);
 void settings_unload(struct settings *root);
 
 bool settings_has(struct settings *s, const char *key);
+bool settings_is_number(struct settings *s, const char *key);
 bool settings_is_text(struct settings *s, const char *key, const char *text);
 double settings_number(struct settings *s, const char *key, struct error *e);
 double settings_positive(struct settings *s, const char *key, struct error *e);

@@ -57,6 +57,7 @@ void suspension_free(struct suspension *s)
 {
     for (int k = 0; k < s->force_count; k++)
         free(s->force[k]);
+    free(s->box.flow);
     neighbours_free(&s->neighbours);
     particles_free(&s->particles);
 }

@@ -3,6 +3,7 @@
  *
  *     eta_r = 1 + sum over origins of (sigma_fg + sigma_gf) / (2 eta rate),     f flow, g gradient axis of the fastest shear
  *
+ * in steady flow (in a flow that changes the rate passes through zero; see viscosity.csv),
  * without the kinetic and the instantaneous Brownian parts: the second has zero mean. The solvent's 1 is its own column.
  * Forces are those that acted at the end of the step; the kinetic part uses full-step velocities.
  */
@@ -29,7 +30,7 @@ static bool stress_table_observe(struct observer *self, const struct suspension 
 {
     struct stress_table *o = (struct stress_table *)self;
     FILE *out = o->table.file;
-    fprintf(out, "%lld,%.17g,%.17g", (long long)s->step, s->box.time, s->box.rate * (s->box.time - s->start_time));
+    fprintf(out, "%lld,%.17g,%.17g", (long long)s->step, s->box.time, box_strain(&s->box, s->start_time, s->box.time));
     if (o->unit != 0.0) {
         double sum = 0.0;
         for (int k = 0; k < s->stress.origins; k++)
@@ -39,6 +40,11 @@ static bool stress_table_observe(struct observer *self, const struct suspension 
     }
     stress_write_values(out, &s->stress);
     return table_check(&o->table, e);
+}
+
+static void stress_table_remember(struct observer *self, struct fields *f)
+{
+    table_remember(&((struct stress_table *)self)->table, "stress.csv", f);
 }
 
 static bool stress_table_close(struct observer *self, struct error *e)
@@ -55,9 +61,9 @@ struct observer *stress_table_new(struct settings *s, struct suspension *of, str
     if (!o)
         return error_out_of_memory(e), NULL;
     o->base = (struct observer){ .measures = true, .open = stress_table_open, .observe = stress_table_observe,
-                                 .close = stress_table_close };
+                                 .remember = stress_table_remember, .close = stress_table_close };
     o->base.every = settings_whole(s, "every", 1, INT64_MAX, e);
-    for (int k = 0; k < 9; k++)
+    for (int k = 0; k < 9 && !of->box.flow; k++)
         if (fabs(of->box.gradient.m[k / 3][k % 3]) == of->box.rate && of->box.rate > 0.0) {
             o->flow = k / 3;
             o->gradient = k % 3;

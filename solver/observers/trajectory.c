@@ -6,14 +6,15 @@
 
 #include <stdlib.h>
 
-struct trajectory { struct observer base; struct table table; };
+struct trajectory { struct observer base; struct table table; bool turn; };
 
 static bool trajectory_open(struct observer *self, const struct suspension *s, const struct destination *to, struct error *e)
 {
     struct table *t = &((struct trajectory *)self)->table;
+    (void)s;
     if (!table_open(t, to, "trajectory.csv", e))
         return false;
-    fprintf(t->file, "step,time,id,x,y,z,ux,uy,uz,wx,wy,wz%s\n", s->particles.turn ? ",turn_x,turn_y,turn_z" : "");
+    fprintf(t->file, "step,time,id,x,y,z,ux,uy,uz,wx,wy,wz%s\n", ((struct trajectory *)self)->turn ? ",turn_x,turn_y,turn_z" : "");
     return true;
 }
 
@@ -26,11 +27,16 @@ static bool trajectory_observe(struct observer *self, const struct suspension *s
         const vec3 u = plus(p->velocity[i], box_flow(&s->box, off)), w = p->spin ? p->spin[i] : vec(0, 0, 0);
         fprintf(t->file, "%lld,%.17g,%d,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g", (long long)s->step, s->box.time, p->tag[i],
                 x.x, x.y, x.z, u.x, u.y, u.z, w.x, w.y, w.z);
-        if (p->turn)
+        if (((struct trajectory *)self)->turn)
             fprintf(t->file, ",%.17g,%.17g,%.17g", p->turn[i].x, p->turn[i].y, p->turn[i].z);
         fputc('\n', t->file);
     }
     return table_check(t, e);
+}
+
+static void trajectory_remember(struct observer *self, struct fields *f)
+{
+    table_remember(&((struct trajectory *)self)->table, "trajectory.csv", f);
 }
 
 static bool trajectory_close(struct observer *self, struct error *e)
@@ -65,7 +71,7 @@ struct observer *trajectory_new(struct settings *s, struct suspension *of, struc
     struct trajectory *o = calloc(1, sizeof *o);
     if (!o)
         return error_out_of_memory(e), NULL;
-    o->base = (struct observer){ .open = trajectory_open, .observe = trajectory_observe, .close = trajectory_close };
+    o->base = (struct observer){ .open = trajectory_open, .observe = trajectory_observe, .remember = trajectory_remember, .close = trajectory_close };
     if (settings_has(s, "at"))
         read_steps(s, &o->base, e);
     else
@@ -73,6 +79,7 @@ struct observer *trajectory_new(struct settings *s, struct suspension *of, struc
     if (settings_flag_or(s, "turn", false, e)) {
         if (!of->rotates)
             settings_refuse(s, "turn", e, "needs a scene in which particles rotate");
+        o->turn = true;
         of->particles.turn = calloc((size_t)of->particles.count + 1, sizeof(vec3));
     }
     return &o->base;

@@ -6,6 +6,7 @@
 #include "output/output.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 struct dump { struct observer base; struct table table; };
 
@@ -38,6 +39,11 @@ static bool dump_observe(struct observer *self, const struct suspension *s, stru
     return table_check(t, e);
 }
 
+static void dump_remember(struct observer *self, struct fields *f)
+{
+    table_remember(&((struct dump *)self)->table, "dump.lammpstrj", f);
+}
+
 static bool dump_close(struct observer *self, struct error *e)
 {
     const bool good = table_close(&((struct dump *)self)->table, e);
@@ -51,10 +57,12 @@ struct observer *dump_new(struct settings *s, struct suspension *of, struct erro
     struct dump *d = calloc(1, sizeof *d);
     if (!d)
         return error_out_of_memory(e), NULL;
-    d->base = (struct observer){ .open = dump_open, .observe = dump_observe, .close = dump_close };
+    d->base = (struct observer){ .open = dump_open, .observe = dump_observe, .remember = dump_remember, .close = dump_close };
     d->base.every = settings_whole(s, "every", 1, INT64_MAX, e);
-    const mat3 *G = &of->box.gradient, *H = &of->box.start;
-    if (!error_raised(e) && (G->m[1][0] != 0.0 || G->m[2][0] != 0.0 || G->m[2][1] != 0.0 || H->m[1][0] != 0.0 || H->m[2][0] != 0.0 || H->m[2][1] != 0.0))
+    const mat3 *H = &of->box.start;
+    bool tilts[3][3];
+    memcpy(tilts, of->box.tilts, sizeof tilts);
+    if (!error_raised(e) && (tilts[1][0] || tilts[2][0] || tilts[2][1] || H->m[1][0] != 0.0 || H->m[2][0] != 0.0 || H->m[2][1] != 0.0))
         settings_refuse(s, "", e, "cannot show this cell: a LAMMPS dump needs A along x and B in the xy plane");
     return &d->base;
 }

@@ -28,7 +28,7 @@ void progress_show(struct progress *p, const struct suspension *s)
     p->shown = now;
     const double speed = (double)(s->step - p->first) / (now - p->started);
     fprintf(stderr, "\rstep %lld of %lld  time %.5g  strain %.4g  %.3g particle-steps/s  %.0f s left \033[K", (long long)s->step, (long long)p->last,
-            s->box.time, s->box.rate * (s->box.time - s->start_time), speed * s->particles.count, (double)(p->last - s->step) / speed);
+            s->box.time, box_strain(&s->box, s->start_time, s->box.time), speed * s->particles.count, (double)(p->last - s->step) / speed);
 }
 
 void progress_end(struct progress *p)

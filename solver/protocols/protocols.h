@@ -8,6 +8,14 @@
 /* The velocity gradient of the scene's list of simple shears (`root.shear`). */
 mat3 steady_shear(struct settings *root, struct error *e);
 
+/* A flow that changes with time (`root.stages`); NULL where the scene has none. */
+struct flow *stages_new(struct settings *root, struct error *e);
+/* What keeps all images of a particle alike while the flow changes: a force, for periodic cells. */
+struct force *stages_inertia(struct error *e);
+
+/* The suspension's box in the flow that the scene names, steady or not. */
+bool driven_box(struct settings *root, struct suspension *s, const mat3 *cell, const bool periodic[3], struct error *e);
+
 /* The scene's `start`: its time, and particles from a file (relative to the scene's) or at random; none if `states` will give them. */
 bool suspension_start(struct settings *root, const char *scene_path, const char *states, struct suspension *s, struct error *e);
 

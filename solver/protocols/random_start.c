@@ -147,13 +147,16 @@ bool random_start(struct settings *s, struct suspension *in, struct error *e)
         return false;
 
     const double stretch = cbrt(share_out(p, count, share, number) / (phi * in->box.volume));
-    mat3 cell = in->box.start, gradient = in->box.gradient;
+    struct flow *flow = in->box.flow;
+    mat3 cell = in->box.start, gradient = flow ? flow->largest : in->box.gradient;
     bool periodic[3];
     memcpy(periodic, in->box.periodic, sizeof periodic);
     for (int k = 0; k < 9; k++)
         cell.m[k / 3][k % 3] *= stretch;
     const double time = in->box.time;
-    if (!box_new(&in->box, &cell, periodic, &gradient, e))
+    const bool made = box_new(&in->box, &cell, periodic, &gradient, e);
+    in->box.flow = flow;
+    if (!made)
         return false;
     box_set_time(&in->box, time);
     box_remap(&in->box);

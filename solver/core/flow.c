@@ -1,0 +1,16 @@
+#include "core/box.h"
+
+mat3 flow_deformation(const struct flow *f, double from, double to)
+{
+    const mat3 S = f->strain(f, to), before = f->strain(f, from);
+    mat3 F;
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+            F.m[r][c] = (r == c) + (S.m[r][c] - before.m[r][c]);
+    return F;
+}
+
+double box_strain(const struct box *b, double from, double to)
+{
+    return b->flow ? b->flow->travelled(b->flow, to) - b->flow->travelled(b->flow, from) : b->rate * (to - from);
+}

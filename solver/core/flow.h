@@ -1,0 +1,25 @@
+/*
+ * A flow that changes with time, as the box asks for it: U_inf(x, t) = G(t) x.
+ *
+ *     F(from -> to) = I + S(to) - S(from),     S(t) = integral of G from 0 to t
+ *
+ * is what it makes of a material line. It is exact, however G changes, if no axis is both a flow and a gradient axis at
+ * any time, for then G(t) G(t') = 0. Who makes such a flow (protocols/stages.c) sees to that.
+ */
+#ifndef CORE_FLOW_H
+#define CORE_FLOW_H
+
+#include "core/vec3.h"
+
+struct flow {
+    mat3 largest;                                               /* of |G|, entry by entry, over all times [1/T] */
+    int flow_axis, gradient_axis;                               /* of the first shear that is named: the plane that tables speak of */
+    double duration;                                            /* from then on the flow is at rest [T] */
+    mat3 (*gradient)(const struct flow *self, double time);     /* G(t) */
+    mat3 (*strain)(const struct flow *self, double time);       /* S(t), in closed form */
+    double (*travelled)(const struct flow *self, double time);  /* strain however it turned: integral of |rate| from 0 */
+};
+
+mat3 flow_deformation(const struct flow *f, double from, double to);
+
+#endif
