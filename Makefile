@@ -25,6 +25,11 @@ all: ## build the programs
 setup: ## install what is missing (Debian packages; as root or with sudo)
 	@tools/setup.sh
 
+# `make -j setup validate` must not build before the libraries are there.
+ifneq ($(filter setup,$(MAKECMDGOALS)),)
+all test validate: | setup
+endif
+
 validate: all ## the fast tier against our own solver, and its report
 	$B/gate run --candidate "$B/shear --evaluate" --jobs $(JOBS) --work $B/cases --report $B/report
 
