@@ -1,6 +1,6 @@
 #!/bin/sh
 # Puts each fault of validation/faults/faults.json into a copy of the solver, builds it, and lets the fast tier judge it, cheap
-# layers first, until one fails. Writes build/faults.txt: verdict, seconds, layer and case, what was said. `make faults [ONLY=word]`.
+# layers first, until one fails. Writes build/faults.txt: verdict, seconds, layer and case, what was said. `make faults [ONLY=word] [FROM=number]`.
 # Fails if a fault passes, or an equivalent change does not.
 set -eu
 cd "$(dirname "$0")/.."
@@ -9,7 +9,7 @@ table=build/faults.txt
 count=$(jq '.faults | length' $list)
 : >$table
 missed=0 tried=0
-k=-1
+k=$((${FROM:-0} - 1))
 while [ $((k += 1)) -lt "$count" ]; do
     name=$(jq -r ".faults[$k].name" $list)
     case $name in *"${ONLY:-}"*) ;; *) continue ;; esac
