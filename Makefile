@@ -17,7 +17,8 @@ TESTS    := $(wildcard tests/*.c)
 LAMMPS   := $(wildcard tools/lammps/*.c)
 objects   = $(1:%.c=$B/obj/%.o)
 PROGRAMS := $B/shear $B/gate $B/lammps-candidate
-MAKE_ALL := $(MAKE) --no-print-directory -j$(JOBS)
+# Takes part in the jobs of a `make -jN` that called it; else uses all cores.
+MAKE_ALL  = $(MAKE) --no-print-directory $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(JOBS))
 
 all: ## build the programs
 	@$(MAKE_ALL) $(PROGRAMS)

@@ -4,8 +4,8 @@
  *     w^2 dt^2 + 2 g dt < 4,    w^2 = largest eigenvalue of M^-1 K,   g = largest eigenvalue of M^-1 R
  *
  * A pair's matrix is positive semidefinite, hence at most twice its diagonal blocks; so both eigenvalues are at most
- * twice the largest eigenvalue of any particle's own 6 x 6 block (plus its one-body rate). The bound is never low; in random
- * packings it is high by 1.35 to 1.5. No pair of the scene, pressed together alone, may be unstable either.
+ * twice the largest eigenvalue of any particle's own 6 x 6 block (plus its one-body rate). The bound is never low. No pair
+ * of the scene, pressed together alone, may be unstable either.
  */
 #ifndef CORE_STEP_LIMIT_H
 #define CORE_STEP_LIMIT_H
