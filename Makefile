@@ -18,10 +18,10 @@ LAMMPS   := $(wildcard tools/lammps/*.c)
 objects   = $(1:%.c=$B/obj/%.o)
 PROGRAMS := $B/shear $B/gate $B/lammps-candidate
 # Takes part in the jobs of a `make -jN` that called it; else uses all cores.
-MAKE_ALL  = $(MAKE) --no-print-directory $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(JOBS))
+PARALLEL  = --no-print-directory $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(JOBS))
 
 all: ## build the programs
-	@$(MAKE_ALL) $(PROGRAMS)
+	@$(MAKE) $(PARALLEL) $(PROGRAMS)
 
 setup: ## install what is missing (Debian packages; as root or with sudo)
 	@tools/setup.sh
@@ -35,7 +35,7 @@ validate: all ## the fast tier against our own solver, and its report
 	$B/gate run --candidate "$B/shear --evaluate" --jobs $(JOBS) --work $B/cases --report $B/report
 
 test: ## build and run the unit tests
-	@$(MAKE_ALL) $(PROGRAMS) $B/unit-tests
+	@$(MAKE) $(PARALLEL) $(PROGRAMS) $B/unit-tests
 	$B/unit-tests
 
 # ---- programs ----
@@ -85,7 +85,7 @@ coverage: ## lines of solver/ that tests and fast tier execute (at least 85 %)
 
 # gcc warns falsely of its own instrumentation, so here alone warnings are no errors.
 sanitize: ## unit tests and the gate's cases under address and undefined-behaviour sanitizers
-	@$(MAKE_ALL) B=$B/sanitize CFLAGS="-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -Wno-error" $B/sanitize/unit-tests $B/sanitize/shear $B/sanitize/gate $B/sanitize/lammps-candidate
+	@$(MAKE) $(PARALLEL) B=$B/sanitize CFLAGS="-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -Wno-error" $B/sanitize/unit-tests $B/sanitize/shear $B/sanitize/gate $B/sanitize/lammps-candidate
 	$B/sanitize/unit-tests
 	GATE_REFERENCE=$B/sanitize/lammps-candidate $B/sanitize/gate run --candidate "$B/sanitize/shear --evaluate" --jobs $(JOBS) --work $B/sanitize/cases --report $B/sanitize/report
 	@echo "sanitize: clean"
