@@ -3,7 +3,8 @@
  * image) -> six numbers of mean 0 and variance 1. The order in which they are asked for does not matter, so the same
  * scene has the same noise in any loop order, in any number of processes, and after a restart.
  *
- * Generator: Philox4x32-10, Salmon et al. (2011), from the Random123 library. Gaussian numbers by Box & Muller (1958).
+ * Generator: Philox4x64-10, Salmon et al. (2011), from the Random123 library: one call gives eight words of 32 bits, enough for
+ * a particle or a pair. Gaussian numbers by Box & Muller (1958).
  */
 #ifndef CORE_NOISE_H
 #define CORE_NOISE_H
@@ -27,17 +28,17 @@ struct noise_place { enum noise_stream stream; int64_t step; int i, j; uint32_t 
 /* Uniform in (0, 1), never 0 or 1, so that its logarithm is finite. */
 static inline double noise_fraction(uint32_t word) { return ((double)word + 0.5) * 0x1p-32; }
 
-static inline philox4x32_ctr_t noise_words(const struct noise_key *key, const struct noise_place *at, uint32_t block)
+static inline philox4x64_ctr_t noise_words(const struct noise_key *key, const struct noise_place *at)
 {
-    const philox4x32_ctr_t counter = { { (uint32_t)at->step, (uint32_t)(at->step >> 32) << 17 | (at->image & 0x7fffu) << 2 | block,
-                                         (uint32_t)at->i, (uint32_t)at->j } };
-    const philox4x32_key_t both = { { key->seed, key->realisation << 8 | (uint32_t)at->stream } };
-    return philox4x32(counter, both);
+    const philox4x64_ctr_t counter = { { (uint64_t)at->step, at->image, (uint64_t)at->i, (uint64_t)at->j } };
+    const philox4x64_key_t both = { { (uint64_t)key->seed << 32 | key->realisation, (uint64_t)at->stream } };
+    return philox4x64(counter, both);
 }
 
-/* Two random words to two independent numbers. */
-static inline void noise_two(enum noise_law law, uint32_t first, uint32_t second, double z[2])
+/* The two halves of a random word to two independent numbers. */
+static inline void noise_two(enum noise_law law, uint64_t word, double z[2])
 {
+    const uint32_t first = (uint32_t)word, second = (uint32_t)(word >> 32);
     if (law == NOISE_UNIFORM) {
         z[0] = sqrt(12.0) * (noise_fraction(first) - 0.5);
         z[1] = sqrt(12.0) * (noise_fraction(second) - 0.5);
@@ -51,11 +52,10 @@ static inline void noise_two(enum noise_law law, uint32_t first, uint32_t second
 /* Two independent vectors of independent numbers. */
 static inline void noise_vectors(enum noise_law law, const struct noise_key *key, const struct noise_place *at, vec3 *first, vec3 *second)
 {
-    const philox4x32_ctr_t v = noise_words(key, at, 0), w = noise_words(key, at, 1);
+    const philox4x64_ctr_t w = noise_words(key, at);
     double z[6];
-    noise_two(law, v.v[0], v.v[1], z);
-    noise_two(law, v.v[2], v.v[3], z + 2);
-    noise_two(law, w.v[0], w.v[1], z + 4);
+    for (int k = 0; k < 3; k++)
+        noise_two(law, w.v[k], z + 2 * k);
     *first = vec(z[0], z[1], z[2]);
     *second = vec(z[3], z[4], z[5]);
 }

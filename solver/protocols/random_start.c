@@ -164,10 +164,10 @@ bool random_start(struct settings *s, struct suspension *in, struct error *e)
         while (left == 0)
             left = number[++kind];
         const struct noise_place place = { NOISE_START, 0, p->tag[i], 0, 0 };
-        const philox4x32_ctr_t w = noise_words(&in->key, &place, 0);
+        const philox4x64_ctr_t w = noise_words(&in->key, &place);
         p->species[i] = kind;
-        p->position[i] = mat3_times(&in->box.cell, vec(noise_fraction(w.v[0]), noise_fraction(w.v[1]),
-                                                       in->dimensions == 2 ? 0.0 : noise_fraction(w.v[2])));
+        p->position[i] = mat3_times(&in->box.cell, vec(noise_fraction((uint32_t)w.v[0]), noise_fraction((uint32_t)w.v[1]),
+                                                       in->dimensions == 2 ? 0.0 : noise_fraction((uint32_t)w.v[2])));
     }
     if (!minimise(in, &worst, e))
         return false;
