@@ -54,8 +54,9 @@ static inline void noise_vectors(enum noise_law law, const struct noise_key *key
 {
     const philox4x64_ctr_t w = noise_words(key, at);
     double z[6];
-    for (int k = 0; k < 3; k++)
-        noise_two(law, w.v[k], z + 2 * k);
+    noise_two(law, w.v[0], z);
+    noise_two(law, w.v[1], z + 2);
+    noise_two(law, w.v[2], z + 4);
     *first = vec(z[0], z[1], z[2]);
     *second = vec(z[3], z[4], z[5]);
 }
