@@ -102,11 +102,14 @@ faults: all ## each fault of validation/faults/ against the fast tier (ONLY=word
 bench: all ## particle-steps per second and instructions per particle-step, beside stock LAMMPS
 	@tools/bench/bench.sh $B
 
+scaling: all ## time of a step against the number of spheres, 1e2 to 1e5 (exponent at most 1.08)
+	@tools/bench/scaling.sh $B
+
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
 
 clean: ## remove build/
 	rm -rf $B
 
-.PHONY: all setup validate test lines coverage sanitize memcheck scenes faults bench help clean FORCE
+.PHONY: all setup validate test lines coverage sanitize memcheck scenes faults bench scaling help clean FORCE
 -include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS) $(LAMMPS)))

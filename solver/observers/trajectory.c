@@ -1,5 +1,5 @@
 /*
- * Where every particle is: `trajectory.csv`, unwrapped positions, the velocity of that image, spins, and on request the
+ * Where every particle is: `trajectory.csv`, unwrapped positions, the velocity of that image, spins, species, and on request the
  * angle turned through (the time integral of the spin).
  */
 #include "observers/observers.h"
@@ -14,7 +14,7 @@ static bool trajectory_open(struct observer *self, const struct suspension *s, c
     (void)s;
     if (!table_open(t, to, "trajectory.csv", e))
         return false;
-    fprintf(t->file, "step,time,id,x,y,z,ux,uy,uz,wx,wy,wz%s\n", ((struct trajectory *)self)->turn ? ",turn_x,turn_y,turn_z" : "");
+    fprintf(t->file, "step,time,id,x,y,z,ux,uy,uz,wx,wy,wz,species%s\n", ((struct trajectory *)self)->turn ? ",turn_x,turn_y,turn_z" : "");
     return true;
 }
 
@@ -25,8 +25,8 @@ static bool trajectory_observe(struct observer *self, const struct suspension *s
     for (int i = 0; i < p->count; i++) {
         const vec3 off = box_unwrapped(&s->box, p->image[i]), x = plus(p->position[i], off);
         const vec3 u = plus(p->velocity[i], box_flow(&s->box, off)), w = p->spin ? p->spin[i] : vec(0, 0, 0);
-        fprintf(t->file, "%lld,%.17g,%d,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g", (long long)s->step, s->box.time, p->tag[i],
-                x.x, x.y, x.z, u.x, u.y, u.z, w.x, w.y, w.z);
+        fprintf(t->file, "%lld,%.17g,%d,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%d", (long long)s->step, s->box.time, p->tag[i],
+                x.x, x.y, x.z, u.x, u.y, u.z, w.x, w.y, w.z, p->species[i] + 1);
         if (((struct trajectory *)self)->turn)
             fprintf(t->file, ",%.17g,%.17g,%.17g", p->turn[i].x, p->turn[i].y, p->turn[i].z);
         fputc('\n', t->file);

@@ -29,17 +29,9 @@ edge_of() {
              END { printf "%.17g", (v / 0.5) ^ (1 / 3) }' "$1"
 }
 
-# Last trajectory frame + species of the starting states -> states.csv, velocities times `factor`.
-freeze() { # trajectory species-list factor
-    awk -F, -v OFS=, -v factor="$3" '
-        FNR == 1 { file++; delete c; seen = 0 }
-        /^#/ { next }
-        !seen++ { for (k = 1; k <= NF; k++) c[$k] = k; if (file == 2) print "id,species,x,y,z,ux,uy,uz,wx,wy,wz"; next }
-        file == 1 { kind[$c["id"]] = $c["species"]; next }
-        { last[$c["id"]] = $c["id"] OFS kind[$c["id"]] OFS $c["x"] OFS $c["y"] OFS $c["z"] OFS $c["ux"] * factor OFS $c["uy"] * factor \
-              OFS $c["uz"] * factor OFS $c["wx"] * factor OFS $c["wy"] * factor OFS $c["wz"] * factor
-          n = n < $c["id"] ? $c["id"] : n }
-        END { for (i = 1; i <= n; i++) print last[i] }' CONVFMT=%.17g OFMT=%.17g "$2" "$1"
+# Last frame of a trajectory -> starting states, velocities times `factor`.
+freeze() { # trajectory factor
+    awk -F, -v OFS=, -v factor="$2" -f "$here/last-frame.awk" "$1"
 }
 
 # Scene $1.json with the box edge and the starting file filled in.
@@ -58,14 +50,12 @@ prepare() { # mixed|equal
         cp "$here/preshear.json" "$tmp/preshear.json"
     fi
     "$shear" "$tmp/preshear.json" -o "$tmp/first" >/dev/null
-    awk -v kind="$kind" -v n=$count 'BEGIN { print "id,species"
-        for (i = 1; i <= n; i++) print i "," (kind == "equal" || i <= 733 ? 1 : 2) }' >"$tmp/species.csv"
-    freeze "$tmp/first/trajectory.csv" "$tmp/species.csv" 1 >"$tmp/first.csv"
+    freeze "$tmp/first/trajectory.csv" 1 >"$tmp/first.csv"
     scene s2 "$tmp/first.csv" "$(edge_of "$tmp/first.csv")" 25000 |
         sed -e 's/"rate": 9e-3/"rate": 0.1/' -e 's/"dt": 1e-4/"dt": 2e-4/' -e 's|"file": "first.csv"|&, "time": 15.0|' \
             -e 's|"run": .*|&, "output": { "states": { "at": [25000] } }|' >"$tmp/second.json"
     "$shear" "$tmp/second.json" -o "$tmp/second" >/dev/null
-    freeze "$tmp/second/trajectory.csv" "$tmp/species.csv" 0.09 >"$states.new"
+    freeze "$tmp/second/trajectory.csv" 0.09 >"$states.new"
     mv "$states.new" "$states"
     rm -r "$tmp"
 }
