@@ -99,6 +99,10 @@ scenes: all ## run every sample scene and draw its plot (at most 20 s each)
 faults: all ## each fault of validation/faults/ against the fast tier (ONLY=word for some)
 	@tools/faults.sh
 
+SEEDS ?= 100
+calibrate: all ## false verdicts of the statistical checks on the correct solver, over SEEDS seeds (default 100; none allowed)
+	@$B/gate calibrate --candidate "$B/shear --evaluate" --jobs $(JOBS) --seeds $(SEEDS) --table $B/calibration.csv --work $B/calibrating
+
 bench: all ## particle-steps per second and instructions per particle-step, beside stock LAMMPS
 	@tools/bench/bench.sh $B
 
@@ -111,5 +115,5 @@ help: ## this list
 clean: ## remove build/
 	rm -rf $B
 
-.PHONY: all setup validate test lines coverage sanitize memcheck scenes faults bench scaling help clean FORCE
+.PHONY: all setup validate test lines coverage sanitize memcheck scenes faults calibrate bench scaling help clean FORCE
 -include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS) $(LAMMPS)))

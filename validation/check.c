@@ -34,7 +34,7 @@ static struct result *append(struct check_run *run, enum judgement judgement, co
     all->item = realloc(all->item, (all->count + 1) * sizeof *all->item);
     struct result *r = &all->item[all->count++];
     *r = (struct result){ .judgement = judgement, .measured = measured, .expected = expected, .error = NAN, .tolerance = NAN,
-                          .p = NAN, .resolution = NAN, .declared = NAN };
+                          .p = NAN, .first_p = NAN, .resolution = NAN, .declared = NAN };
     r->what = copy_text(what);
     return r;
 }
@@ -64,7 +64,7 @@ struct result *check_p(struct check_run *run, enum judgement judgement, const ch
 {
     struct result *r = append(run, judgement, what, measured, expected);
     WITH_SENTENCE(r);
-    r->p = p;
+    r->p = r->first_p = p;
     r->resolution = resolution;
     r->declared = declared;
     r->verdict = VERDICT_PASS; /* settled by check_judge; a sample too small to see what it must never passes */

@@ -35,6 +35,7 @@ struct result {
     double measured, expected;          /* the numbers for people; NaN where there is no single one */
     double error, tolerance;            /* judged: error <= tolerance; NaN for statistical results */
     double p;                           /* NaN for deterministic results */
+    double first_p;                     /* of the first attempt, where a rerun has replaced p; else the same */
     double resolution, declared;        /* smallest relative fault this sample can see, and the one it must see; NaN: not said */
     enum verdict verdict;
     char *sentence;                     /* names the wrong term in a full sentence; shown unless passed */

@@ -3,7 +3,7 @@
  *
  * This file is the command line: which cases, in which order, against which candidate, and what is written where.
  */
-#include "run.h"
+#include "calibrate.h"
 #include "terminal.h"
 
 #include <stdarg.h>
@@ -20,6 +20,9 @@ static const char help[] =
     "\n"
     "  gate run --candidate COMMAND [options]   ask the cases, print verdicts, write a report\n"
     "  gate list [options]                      the cases that `run` would ask\n"
+    "  gate calibrate --candidate COMMAND --seeds N --table FILE [options]\n"
+    "                                           the cases with p-values under N seeds, for a candidate that is right:\n"
+    "                                           false verdicts and the spread of p; goes on where FILE ends\n"
     "\n"
     "  --candidate COMMAND   called as COMMAND CASE_DIR OUT_DIR (docs/formats.md)\n"
     "  --layer LAYER         only this layer, by number or name: 1 pair, 2 noise, 3 single, 4 two-bodies, 5 dilute,\n"
@@ -29,6 +32,8 @@ static const char help[] =
     "  --tier TIER           fast (default), standard, full; each includes the ones before it\n"
     "  --jobs N              worker processes (default 1)\n"
     "  --seed-offset K       other seeds for everything random (default 0: those written in the cases)\n"
+    "  --seeds N             calibrate: seed offsets 1 to N\n"
+    "  --table FILE          calibrate: CSV with a row per seed\n"
     "  --report DIR          index.html and junit.xml (default build/report)\n"
     "  --work DIR            what candidates are given and answer (default build/cases)\n"
     "  --suite-dir DIR       the folder that holds cases/ and flags.json (default: validation/, found from the program)\n"
@@ -36,11 +41,12 @@ static const char help[] =
     "Exit codes: 0 pass, 1 fail, 2 wrong usage, 3 only inconclusive, 77 nothing supported.\n";
 
 struct options {
-    const char *candidate, *layers, *cases, *needs, *report, *work;
+    const char *candidate, *layers, *cases, *needs, *report, *work, *table;
     char suite_dir[PATH_LENGTH];
     enum tier tier;
     int jobs;
-    unsigned seed_offset;
+    unsigned seed_offset, seeds;
+    bool calibrating;
 };
 
 static int usage(const char *format, ...) __attribute__((format(printf, 1, 2)));
@@ -97,6 +103,8 @@ static int parse_option(struct options *o, const char *name, const char *value)
         o->needs = value;
     else if (strcmp(name, "--report") == 0)
         o->report = value;
+    else if (strcmp(name, "--table") == 0)
+        o->table = value;
     else if (strcmp(name, "--work") == 0)
         o->work = value;
     else if (strcmp(name, "--suite-dir") == 0)
@@ -111,6 +119,10 @@ static int parse_option(struct options *o, const char *name, const char *value)
         if (!whole_number(value, 0, 2147483647, &n))
             return usage("--seed-offset '%s' is no whole number from 0 to 2147483647", value);
         o->seed_offset = (unsigned)n;
+    } else if (strcmp(name, "--seeds") == 0) {
+        if (!whole_number(value, 1, 1000000, &n))
+            return usage("--seeds '%s' is no whole number from 1 to 1000000", value);
+        o->seeds = (unsigned)n;
     } else
         return usage("unknown option '%s'; see gate --help", name);
     return 0;
@@ -131,7 +143,7 @@ static bool in_list(const char *list, const char *word)
 static bool wanted(const struct options *o, const struct gate_case *c)
 {
     char number[2] = { (char)('0' + c->layer), '\0' };
-    return c->tier <= o->tier && (!o->cases || in_list(o->cases, c->name)) && (!o->needs || case_lists(c->needs, o->needs))
+    return c->tier <= o->tier && (!o->calibrating || c->p_values > 0) && (!o->cases || in_list(o->cases, c->name)) && (!o->needs || case_lists(c->needs, o->needs))
            && (!o->layers || in_list(o->layers, layer_name(c->layer)) || in_list(o->layers, number));
 }
 
@@ -212,6 +224,12 @@ static int run_cases(const struct options *o, const struct suite_of_cases *suite
         free(work);
         return usage("there is no program '%.*s' to run as the candidate", (int)strcspn(o->candidate, " \t"), o->candidate);
     }
+    if (o->calibrating) {
+        const bool good = calibrate_run(&plan, &p, o->seeds, o->table, why);
+        free(work);
+        const int code = good ? calibrate_summary(o->table, why) : EXIT_USAGE;
+        return code == EXIT_USAGE ? usage("%s", why) : code;
+    }
     say_not_tested(o, suite, count, p.not_tested, sizeof p.not_tested);
     const time_t date = time(NULL);
     strftime(p.date, sizeof p.date, "%Y-%m-%dT%H:%M:%SZ", gmtime(&date));
@@ -271,10 +289,11 @@ int main(int argc, char **argv)
         return fputs(help, stdout) < 0;
     if (strcmp(verb, "--version") == 0)
         return printf("gate %s, suite 1.0\n", GATE_VERSION) < 0;
-    if (strcmp(verb, "run") != 0 && strcmp(verb, "list") != 0)
-        return usage("%s'%s'; see gate --help", *verb ? "unknown command " : "say `run` or `list`, not ", verb);
+    if (strcmp(verb, "run") != 0 && strcmp(verb, "list") != 0 && strcmp(verb, "calibrate") != 0)
+        return usage("%s'%s'; see gate --help", *verb ? "unknown command " : "say `run`, `list` or `calibrate`, not ", verb);
 
-    struct options o = { .report = "build/report", .work = "build/cases", .jobs = 1 };
+    struct options o = { .report = "build/report", .work = "build/cases", .jobs = 1,
+                         .calibrating = strcmp(verb, "calibrate") == 0 };
     find_suite(o.suite_dir);
     for (int k = 2; k < argc; k += 2) {
         if (strcmp(argv[k], "--help") == 0)
@@ -283,7 +302,9 @@ int main(int argc, char **argv)
         if (code != 0)
             return code;
     }
-    if (strcmp(verb, "run") == 0 && !o.candidate)
-        return usage("run needs --candidate COMMAND");
+    if (strcmp(verb, "list") != 0 && !o.candidate)
+        return usage("%s needs --candidate COMMAND", verb);
+    if (o.calibrating && (!o.seeds || !o.table))
+        return usage("calibrate needs --seeds N and --table FILE");
     return with_suite(verb, &o);
 }

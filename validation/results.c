@@ -36,10 +36,10 @@ json_t *results_to_json(const struct results *r)
     json_t *all = json_array();
     for (size_t k = 0; k < r->count; k++) {
         const struct result *i = &r->item[k];
-        json_array_append_new(all, json_pack("{so si so so so so so so so ss so so so}", "what", text(i->what), "judgement",
+        json_array_append_new(all, json_pack("{so si so so so so so so so so ss so so so}", "what", text(i->what), "judgement",
                                              (int)i->judgement, "measured", number(i->measured), "expected",
                                              number(i->expected), "error", number(i->error), "tolerance",
-                                             number(i->tolerance), "p", number(i->p), "resolution", number(i->resolution),
+                                             number(i->tolerance), "p", number(i->p), "first_p", number(i->first_p), "resolution", number(i->resolution),
                                              "declared", number(i->declared), "verdict", verdict_word(i->verdict), "sentence",
                                              text(i->sentence), "picture", text(i->picture), "notes", text(i->notes)));
     }
@@ -73,6 +73,7 @@ bool results_from_json(const json_t *j, struct results *r)
             .error = as_number(json_object_get(i, "error")),
             .tolerance = as_number(json_object_get(i, "tolerance")),
             .p = as_number(json_object_get(i, "p")),
+            .first_p = as_number(json_object_get(i, "first_p")),
             .resolution = as_number(json_object_get(i, "resolution")),
             .declared = as_number(json_object_get(i, "declared")),
             .verdict = as_verdict(json_object_get(i, "verdict")),
