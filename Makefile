@@ -14,7 +14,6 @@ BASE     := -std=c11 -D_XOPEN_SOURCE=700 -ffp-contract=off -fno-math-errno $(WAR
 SOLVER   := $(wildcard solver/*.c solver/*/*.c)
 GATE     := $(wildcard validation/*.c validation/checks/*.c validation/theory/*.c)
 TESTS    := $(wildcard tests/*.c)
-LAMMPS   := $(wildcard tools/lammps/*.c)
 objects   = $(1:%.c=$B/obj/%.o)
 PROGRAMS := $B/shear $B/gate $B/lammps-candidate
 # Takes part in the jobs of a `make -jN` that called it; else uses all cores.
@@ -59,18 +58,15 @@ $B/obj/tests/%.o: tests/%.c
 	@mkdir -p $(@D)
 	$(CC) $(BASE) $(CFLAGS) -Isolver -Ivalidation -Itests -c $< -o $@
 
-$B/obj/tools/%.o: tools/%.c
-	@mkdir -p $(@D)
-	$(CC) $(BASE) $(CFLAGS) -c $< -o $@
-
 $B/shear: $(call objects,$(SOLVER))
 	$(CC) $(CFLAGS) $^ -o $@ -ljansson -lm
 
 $B/gate: $(call objects,$(GATE))
 	$(CC) $(CFLAGS) $^ -o $@ -ljansson -lgsl -lgslcblas -lm
 
-$B/lammps-candidate: $(call objects,$(LAMMPS))
-	$(CC) $(CFLAGS) $^ -o $@ -ljansson -lm
+$B/lammps-candidate: tools/lammps/candidate.py
+	@mkdir -p $(@D)
+	install -m 755 $< $@
 
 $B/unit-tests: $(call objects,$(TESTS) $(filter-out solver/shear.c,$(SOLVER)) $(filter-out validation/gate.c,$(GATE)))
 	$(CC) $(CFLAGS) $^ -o $@ -lcunit -ljansson -lgsl -lgslcblas -lm
@@ -116,4 +112,4 @@ clean: ## remove build/
 	rm -rf $B
 
 .PHONY: all setup validate test lines coverage sanitize memcheck scenes faults calibrate bench scaling help clean FORCE
--include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS) $(LAMMPS)))
+-include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS)))

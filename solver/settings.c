@@ -309,6 +309,13 @@ bool settings_load(struct settings *root, const char *path, const char *const *s
     return !error_raised(e);
 }
 
+bool settings_save(const struct settings *root, const char *path, struct error *e)
+{
+    if (json_dump_file(root->node, path, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) != 0)
+        return error_raise(e, ERROR_RUN, "%s cannot be written", path);
+    return true;
+}
+
 void settings_unload(struct settings *root)
 {
     json_decref((json_t *)(uintptr_t)root->node);

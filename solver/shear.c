@@ -3,6 +3,7 @@
  */
 #include "describe.h"
 #include "evaluate.h"
+#include "export.h"
 #include "scene.h"
 
 #include <stdio.h>
@@ -10,6 +11,7 @@
 
 static const char usage[] =
     "usage: shear SCENE.json [-o DIR] [--set path=value ...] [--check] [--resume]\n"
+    "       shear SCENE.json --export lammps DIR [--set path=value ...]\n"
     "       shear --evaluate CASE_DIR OUT_DIR\n"
     "       shear --help | --version\n"
     "\n"
@@ -20,6 +22,7 @@ static const char usage[] =
     "  --set path=value   replace one value of the scene, such as --set fluid.kT=0 or --set species[0].radius=1.3\n"
     "  --check            say what would be built, its time scales and its step limit, and stop\n"
     "  --resume           go on from the checkpoint in DIR, bit for bit (Ctrl-C writes one)\n"
+    "  --export lammps DIR  write a LAMMPS deck and data file instead of running; refuse what stock styles cannot do\n"
     "  --evaluate         a case of the gate: frozen states in, forces, torques and stresses out; or noise draws; or a run\n"
     "\n"
     "Exit codes: 0 done, 1 the run failed, 2 the input is wrong, 77 not supported, 130 interrupted.\n"
@@ -45,7 +48,7 @@ static void run_scene(const char *scene, const char *folder, const struct scene_
 int main(int argc, char **argv)
 {
     struct error e = { 0 };
-    const char *scene = NULL, *set[64];
+    const char *scene = NULL, *set[64], *format = NULL;
     char folder[400] = "out";
     bool check = false;
     struct scene_options options = { .set = set };
@@ -62,7 +65,10 @@ int main(int argc, char **argv)
                 check = true;
             else if (strcmp(argv[k], "--resume") == 0)
                 options.resume = true;
-            else if (strcmp(argv[k], "-o") == 0 && k + 1 < argc)
+            else if (strcmp(argv[k], "--export") == 0 && k + 2 < argc) {
+                format = argv[++k];
+                snprintf(folder, sizeof folder, "%s", argv[++k]);
+            } else if (strcmp(argv[k], "-o") == 0 && k + 1 < argc)
                 snprintf(folder, sizeof folder, "%s", argv[++k]);
             else if (strcmp(argv[k], "--set") == 0 && k + 1 < argc && options.set_count < 64)
                 set[options.set_count++] = argv[++k];
@@ -73,7 +79,9 @@ int main(int argc, char **argv)
         }
         if (!scene)
             error_raise(&e, ERROR_INPUT, "no scene given; shear --help says how");
-        if (!error_raised(&e))
+        if (!error_raised(&e) && format)
+            export_scene(scene, &options, format, folder, &e);
+        else if (!error_raised(&e))
             run_scene(scene, folder, &options, check, &e);
     }
     if (error_raised(&e))

@@ -25,6 +25,8 @@ struct settings {
 bool settings_load(struct settings *root, const char *path, const char *const *set, int set_count, struct error *e);
 /* A number for all that the scene says but how long to run and when to write checkpoints. */
 uint64_t settings_fingerprint(const struct settings *root);
+/* Writes the whole as a file, numbers with 17 digits. */
+bool settings_save(const struct settings *root, const char *path, struct error *e);
 void settings_unload(struct settings *root);
 
 bool settings_has(struct settings *s, const char *key);
