@@ -10,13 +10,11 @@
 #include <string.h>
 
 static const char usage[] =
-    "usage: shear SCENE.json [-o DIR] [--set path=value ...] [--check] [--resume]\n"
-    "       shear SCENE.json --export lammps DIR [--set path=value ...]\n"
+    "usage: shear SCENE.json [-o DIR] [--set path=value ...] [--check] [--resume] [--export lammps DIR]\n"
     "       shear --evaluate CASE_DIR OUT_DIR\n"
     "       shear --help | --version\n"
     "\n"
-    "Runs the suspension that SCENE.json describes and writes the tables it asks for to DIR\n"
-    "(default: out).\n"
+    "Runs the suspension of SCENE.json and writes the tables that it asks for to DIR (default: out).\n"
     "\n"
     "  -o DIR             where to write; made if it is not there\n"
     "  --set path=value   replace one value of the scene, such as --set fluid.kT=0 or --set species[0].radius=1.3\n"
@@ -79,10 +77,8 @@ int main(int argc, char **argv)
         }
         if (!scene)
             error_raise(&e, ERROR_INPUT, "no scene given; shear --help says how");
-        if (!error_raised(&e) && format)
-            export_scene(scene, &options, format, folder, &e);
-        else if (!error_raised(&e))
-            run_scene(scene, folder, &options, check, &e);
+        if (!error_raised(&e))
+            format ? (void)export_scene(scene, &options, format, folder, &e) : run_scene(scene, folder, &options, check, &e);
     }
     if (error_raised(&e))
         fprintf(stderr, "shear: %s\n", e.text);

@@ -3,8 +3,7 @@
  * image) -> six numbers of mean 0 and variance 1. The order in which they are asked for does not matter, so the same
  * scene has the same noise in any loop order, in any number of processes, and after a restart.
  *
- * Generator: Philox4x64-10, Salmon et al. (2011), from the Random123 library: one call gives eight words of 32 bits, enough for
- * a particle or a pair. Gaussian numbers by Box & Muller (1958).
+ * Generator: Philox4x64-10, Salmon et al. (2011), from Random123: one call gives a particle or a pair all it needs. Gaussian: Box & Muller (1958).
  */
 #ifndef CORE_NOISE_H
 #define CORE_NOISE_H
