@@ -105,11 +105,14 @@ bench: all ## particle-steps per second and instructions per particle-step, besi
 scaling: all ## time of a step against the number of spheres, 1e2 to 1e5 (exponent at most 1.08)
 	@tools/bench/scaling.sh $B
 
+second-opinion: ## LAMMPS's lubrication and noise styles, coefficient by coefficient (docs/lammps.md)
+	@python3 tools/lammps/coefficients.py
+
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
 
 clean: ## remove build/
 	rm -rf $B
 
-.PHONY: all setup validate test lines coverage sanitize memcheck scenes faults calibrate bench scaling help clean FORCE
+.PHONY: all setup validate test lines coverage sanitize memcheck scenes faults calibrate bench scaling second-opinion help clean FORCE
 -include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS)))

@@ -14,7 +14,8 @@ random numbers stand for those of the scene: lubricate/poly and brownian/poly, o
   drag        fix langevin at T = 0 is -(m/damp) u with damp = m/(6 pi eta a) of species 1, `scale` for the others; with the bias of
               temp/deform u is relative to h_rate * lamda = rate (y - ylo), which is U_inf as the cell starts at y = 0. `omega yes` is
               -8 pi eta a^3 w (its 10/3 times 2/5 m a^2/damp), towards no spin: right at rest only.
-  noise       fix langevin draws uniform numbers; at velocity zero its force is noise alone.
+  noise       fix langevin draws uniform numbers; near velocity zero its force is noise alone. With a bias it draws none along a component
+              whose velocity beyond the bias is exactly zero, hence 1e-200.
   cell        fix deform moves it at the end of a step, so forces see the cell of the step before. A first step therefore lets only the cell
               move (no sphere is integrated); from then on forces see the cell of their own time. `start`, `stop` give `run 0` a flow rate.
   flips       where the tilt flips, spheres outside at that moment are wrapped without changing velocity (mended upstream by pull request
@@ -56,6 +57,7 @@ class Task:
         need(self.protocol in ("forces", "noise", "run"), f"this adapter does not answer protocol \"{self.protocol}\"")
         need(scene.get("dimensions", 3) == 3, "this adapter writes three-dimensional boxes only")
         need("states" in self.case, "this adapter starts from states.csv: LAMMPS makes no packings")
+        need(self.protocol != "noise" or not scene.get("shear"), "the noise of fix langevin alone is asked for at rest only")
         need("contacts" not in self.case, "tangential histories cannot be given to LAMMPS from outside")
         need(not scene.get("start", {}).get("thermal"), "thermal starting velocities are the candidate's own random numbers; this adapter draws none")
         for species in scene["species"]:
@@ -153,7 +155,7 @@ def write_data(t, state, out):
             nx = math.floor((x[0] - x[1] / L[1] * t.tilt) / L[0])
             inside = (x[0] - ny * t.tilt - nx * L[0], x[1] - ny * L[1], x[2] - nz * L[2])
             f.write(f"{id} {s + 1} {2 * t.radius[s]!r} {t.scene['species'][s]['density']!r} {inside[0]!r} {inside[1]!r} {inside[2]!r} {nx} {ny} {nz}\n")
-            v = (0, 0, 0) if t.protocol == "noise" else (u[0] - ny * t.rate * L[1], u[1], u[2])
+            v = (1e-200,) * 3 if t.protocol == "noise" else (u[0] - ny * t.rate * L[1], u[1], u[2])
             speeds += f"{id} " + " ".join(repr(c) for c in (*v, *w)) + "\n"
         f.write("\nVelocities\n\n" + speeds)
 
