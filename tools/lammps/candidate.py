@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 """Stock LAMMPS as a candidate of the gate, and `shear --export lammps`: a worked example of an adapter, sharing nothing with our solver.
 
-    lammps-candidate [--own poly|equal] CASE_DIR OUT_DIR    answer a case (docs/formats.md) with `lmp`, or the program that LMP names
+    lammps-candidate [--own poly|equal|theory|reference] CASE_DIR OUT_DIR    answer a case (docs/formats.md) with `lmp`, or the program that LMP names
     lammps-candidate --deck CASE_DIR OUT_DIR                        write deck and data, run nothing
 
 What stock styles have no exact equivalent of ends with exit code 77 and the reason. --own lets LAMMPS's own lubrication, noise and uniform
-random numbers stand for those of the scene: lubricate/poly and brownian/poly, or lubricate and brownian (equal spheres). How LAMMPS (29 Sep 2021) differs from docs/formats.md, and what is done about it:
+random numbers stand for those of the scene: lubricate/poly and brownian/poly, or lubricate and brownian (equal spheres). --own theory
+takes lubrication, drag and noise from validation/theory through LAMMPS's library (host.c), for `run` alone. --own reference: theory where no stock
+style is exact, else stock styles. How LAMMPS (29 Sep 2021) differs from docs/formats.md, and what is done about it:
 
   axes        its shears are xy, xz, yz only: axes are renamed so that the flow is along x and the gradient along y; a renaming that mirrors
               space changes the sign of spins and torques.
@@ -64,6 +66,9 @@ class Task:
             only(species, "the species' key", "name radius density")
         self.radius = [s["radius"] for s in scene["species"]]
         self.mass = [4 / 3 * PI * s["density"] * s["radius"] ** 3 for s in scene["species"]]
+        if own == "reference":
+            turning = scene.get("shear") and self.forces.get("drag", {}).get("torque")
+            self.own = own = "theory" if turning or "lubrication" in self.forces or "drag_noise" in self.forces else None
         self.eta, self.kT = scene.get("fluid", {}).get("viscosity"), scene.get("fluid", {}).get("kT", 0)
         self.read_box()
         self.check_forces()
@@ -92,7 +97,8 @@ class Task:
         need(not self.friction or contact["lever"] == "radius", "gran/hooke/history turns contacts about the full radii: only \"lever\": \"radius\"")
         need("normal_damping" not in contact or contact["tension"] == "allow" and (not self.friction or contact["cap"] == "absolute"),
              "gran/hooke/history lets contacts pull and caps friction by the absolute damped force: only \"allow\" and \"absolute\"")
-        need(not (drag.get("torque") and self.rate),
+        need(self.own != "theory" or self.protocol == "run", "the host of validation/theory answers protocol run only")
+        need(self.own == "theory" or not (drag.get("torque") and self.rate),
              "fix langevin damps spins towards zero, not towards half the vorticity: in shear \"torque\" must be false")
         if not self.own:
             need("lubrication" not in self.forces,
@@ -179,7 +185,7 @@ def pair_styles(t, forces):
             coefficients.append(f"{i + 1} {j + 1} {A!r} {kappa!r} {touch!r} 0 0 {touch + r['cutoff'] * kappa!r}")
         found.append((f"born {2 * max(a) * (1 + r['cutoff'] * r['kappa_factor'])!r}", coefficients,
                       "forces.repulsion: A exp(-h/kappa) is born's A exp((sigma - r)/rho) with C = D = 0"))
-    for name, head in (("lubrication", f"lubricate{kind} {t.eta!r} 1 0"), ("lubrication_noise", f"brownian{kind} {t.eta!r} 1 0")):
+    for name, head in () if t.own == "theory" else (("lubrication", f"lubricate{kind} {t.eta!r} 1 0"), ("lubrication_noise", f"brownian{kind} {t.eta!r} 1 0")):
         if name in forces:
             l = t.forces["lubrication"]
             inner, outer = (lambda i, j, g=g: (a[i] + a[j]) * (1 + g / 2) for g in (l["inner_gap"], l["outer_gap"]))
@@ -209,11 +215,15 @@ def physics(t, state, forces):
             i, j, *rest = c.split()
             put(" ".join(["pair_coeff", i, j, *([style.split()[0]] if hybrid else []), *rest]))
     # The skin costs neighbours, but LAMMPS also rebuilds its lists when a corner of the sheared cell has moved half of it.
-    put(f"neighbor {max(0.3 * min(a), min(1.2 * min(a), 0.08 * t.edge[1]))!r} bin\nneigh_modify every 1 delay 0 check yes")
+    if t.own == "theory":   # reads the same list up to the outer cut-off: half the skin covers it, and ten steps move a sphere far less than the rest
+        skin = 2 * max(a) * t.forces.get("lubrication", {}).get("outer_gap", 0)
+        put(f"neighbor {skin + 0.2 * min(a)!r} bin\nneigh_modify every 10 delay 0 check no\nfix host all external pf/callback 1 1")
+    else:
+        put(f"neighbor {max(0.3 * min(a), min(1.2 * min(a), 0.08 * t.edge[1]))!r} bin\nneigh_modify every 1 delay 0 check yes")
     put(f"# shear: dU_x/dy; `remap v` changes the velocity of what crosses a face\nfix flow all deform 1 xy erate {t.rate!r} remap v flip no")
     put("compute c all temp/deform\ncompute pp all pressure NULL pair\ncompute pk all pressure c ke")
     put("thermo_style custom step " + " ".join(f"c_{p}[{k}]" for p in ("pp", "pk") for k in range(1, 7)) + "\nthermo_modify format float %.17g lost error")
-    if "drag" in forces or "drag_noise" in forces:
+    if t.own != "theory" and ("drag" in forces or "drag_noise" in forces):
         damp = [m / (6 * PI * t.eta * r) for m, r in zip(t.mass, a)]
         kT = t.kT if "drag_noise" in forces else 0
         scale = "".join(f" scale {k + 1} {damp[k] / damp[0]!r}" for k in range(1, len(a)))
@@ -256,13 +266,25 @@ def write_deck(t, f):
                 f"run 1 start {t.first - 1} stop {t.first + t.steps}\ngroup moving union all\nrun {t.steps} {span} pre no\n")
 
 
-def run_lammps(out):
+def write_parameters(t, out):
+    """What host.c reads: see its head."""
+    l = t.forces.get("lubrication", {})
+    style = pair_styles(t, t.forces)[0][0].split()[0] if "contact" in t.forces else "zero"
+    flags = [int(n in t.forces) for n in ("drag", "lubrication", "drag_noise", "lubrication_noise")]
+    flags.insert(1, int(t.forces.get("drag", {}).get("torque", False)))
+    values = [t.eta, t.rate, t.dt, t.kT, t.scene.get("seed", 1), *flags, l.get("inner_gap", 1), l.get("outer_gap", 0), t.stress_every, t.first, style]
+    with open(os.path.join(out, "host.parameters"), "w") as f:
+        f.write("\n".join(str(v) for v in values) + "\n")
+
+
+def run_lammps(out, hosted):
     program = os.environ.get("LMP", "lmp")
+    host = [os.path.join(os.path.dirname(os.path.realpath(__file__)), "lammps-host"), "in.lammps", "host.parameters"]
     try:
-        done = subprocess.run([program, "-in", "in.lammps", "-log", "lammps.log", "-screen", "none", "-nocite"], cwd=out, capture_output=True)
+        done = subprocess.run(host if hosted else [program, "-in", "in.lammps", "-log", "lammps.log", "-screen", "none", "-nocite"], cwd=out, capture_output=True)
     except FileNotFoundError:
-        stop(1, f"the LAMMPS program \"{program}\" was not found (Debian package lammps; or give its full path in the environment variable LMP)")
-    if done.returncode:
+        stop(1, "the program lammps-host is not beside this one" if hosted else f"the LAMMPS program \"{program}\" was not found (Debian package lammps; or give its full path in the environment variable LMP)")
+    if done.returncode or hosted and not os.path.getsize(os.path.join(out, "lammps.log")):
         errors = [line.strip() for line in open(os.path.join(out, "lammps.log")) if line.startswith("ERROR")]
         stop(1, f"LAMMPS stopped: {errors[-1] if errors else f'exit code {done.returncode}'} (see {out}/lammps.log)")
 
@@ -341,7 +363,12 @@ def stress_cells(t, state, part, kinetic):
 
 def answer_run(t, out):
     if t.stress_every:
-        need(sum(o in origins(t) for o in ("contact_normal", "repulsion", "lubrication")) < 2, "LAMMPS does not tell the pressures of several pair styles apart")
+        hosted = {}
+        if t.own == "theory":
+            for line in open(os.path.join(out, "host.stress")):
+                step, *v = line.split()
+                hosted[int(step)] = [[float(v[3 * a + b]) / t.volume for b in range(3)] for a in range(3)]
+        need(sum(o in origins(t) for o in ("contact_normal", "repulsion", *(() if hosted else ("lubrication",)))) < 2, "LAMMPS does not tell the pressures of several pair styles apart")
         pairs = {step: rows for step, _, rows in frames(os.path.join(out, "lammps.pairs"))} if t.friction else {}
         with open(os.path.join(out, "stress.csv"), "w") as f:
             f.write("step,time,strain" + header(t))
@@ -351,6 +378,8 @@ def answer_run(t, out):
                     continue        # printed anyway: first and last step of each of the two runs, and so step 0 twice
                 last, passed = step, (step - t.first) * t.dt
                 part = dict(zip(("contact_normal", "contact_tangential"), contact_by_pairs(t, pairs[step]))) if t.friction else {o: pair for o in origins(t)}
+                if hosted:
+                    part["lubrication"] = hosted[step]
                 f.write(f"{step - t.first},{t.time + passed:.17g},{abs(t.rate) * passed:.17g}" + stress_cells(t, 0, part, kinetic))
     if t.states_every:
         with open(os.path.join(out, "trajectory.csv"), "w") as f:
@@ -400,7 +429,7 @@ def answer_noise(t, out):
 def main(words):
     deck_only = words[:1] == ["--deck"]
     own = words[1] if words[:1] == ["--own"] and len(words) > 1 else None
-    if len(words) != 2 + deck_only + 2 * bool(own) or own not in (None, "poly", "equal"):
+    if len(words) != 2 + deck_only + 2 * bool(own) or own not in (None, "poly", "equal", "theory", "reference"):
         print(__doc__, file=sys.stderr)
         return 2
     folder, out = words[-2:]
@@ -413,7 +442,9 @@ def main(words):
     if deck_only:
         return 0
     open(os.path.join(out, "lammps.dump"), "w").close()     # frozen states append to it
-    run_lammps(out)
+    if t.own == "theory":
+        write_parameters(t, out)
+    run_lammps(out, t.own == "theory")
     {"forces": answer_forces, "noise": answer_noise, "run": answer_run}[t.protocol](t, out)
     return 0
 

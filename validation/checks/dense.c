@@ -73,7 +73,7 @@ bool dense_ask_both(struct check_run *run, const char *name, const struct dense_
     if (!check_ask(run, name, &q, out[0]))
         return false;
     const double after = run->candidate_seconds;
-    reference.command = getenv("GATE_REFERENCE") ? getenv("GATE_REFERENCE") : "build/lammps-candidate";
+    reference.command = getenv("GATE_REFERENCE") ? getenv("GATE_REFERENCE") : "build/lammps-candidate --own reference";
     snprintf(label, sizeof label, "reference-%s", name);
     run->candidate = &reference;
     const bool good = check_ask(run, label, &q, out[1]);

@@ -16,7 +16,8 @@ bool dense_start(struct check_run *run, unsigned seed, struct dense_start *s);
 void dense_start_free(struct dense_start *s);
 
 /*
- * Run the scene of `s` in the candidate and in the reference: the command in GATE_REFERENCE, else build/lammps-candidate. False
+ * Run the scene of `s` in the candidate and in the reference: the command in GATE_REFERENCE, else build/lammps-candidate --own reference, which
+ * is stock LAMMPS where its styles are exact and else LAMMPS with the resistances of validation/theory. False
  * if either has no answer; it has been recorded then. A reference that is missing or refuses is a failure of the set-up.
  */
 bool dense_ask_both(struct check_run *run, const char *name, const struct dense_start *s, char out[2][PATH_LENGTH]);
