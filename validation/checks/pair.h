@@ -42,6 +42,8 @@ struct model {
 bool model_read(struct check_run *run, const json_t *scene, struct model *m);
 /* Part of model_read: dashpots, friction laws, repulsion, motion of species. */
 void model_read_laws(const json_t *scene, struct model *m);
+/* Constant force, then torque, that the scene applies to this species (from 0). */
+void scene_applied(const json_t *scene, size_t kind, double load[6]);
 /* The contact law of two spheres, told apart by their radii. */
 struct theory_contact contact_between(const struct model *m, double a1, double a2);
 /* The scene of the case with what a variant changes: "shear", "time", "lengths", "cell", "periodic". Caller owns the result. */

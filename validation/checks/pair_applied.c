@@ -1,12 +1,12 @@
 /* Constant forces and torques by species on frozen spheres, wherever they are and however they move; nothing for those not named. */
 #include "pair_checks.h"
 
-static void applied_to(const json_t *scene, size_t kind, double expected[6])
+void scene_applied(const json_t *scene, size_t kind, double load[6])
 {
     const json_t *species = json_array_get(scene_get(scene, "species"), kind);
     const json_t *own = json_object_get(scene_get(scene, "forces.applied"), json_string_value(json_object_get(species, "name")));
     for (size_t k = 0; k < 6; k++)
-        expected[k] = json_number_value(json_array_get(json_object_get(own, k < 3 ? "force" : "torque"), k % 3));
+        load[k] = json_number_value(json_array_get(json_object_get(own, k < 3 ? "force" : "torque"), k % 3));
 }
 
 void pair_applied(struct check_run *run)
@@ -30,7 +30,7 @@ void pair_applied(struct check_run *run)
             for (int side = 0; side < 2; side++) {
                 double expected[6];
                 const double *own = forces_at(&answer.forces, k, "applied", 1 + side);
-                applied_to(scene, side ? k % m.species : k / m.species, expected);
+                scene_applied(scene, side ? k % m.species : k / m.species, expected);
                 worst_see_vector(&force, own, expected, 3, 1, k);
                 worst_see_vector(&torque, own + 3, expected + 3, 3, 1, k);
                 worst_see_vector(&total, forces_at(&answer.forces, k, "total", 1 + side), own, 6, 1, k);

@@ -22,8 +22,9 @@
 
 bool bodies_make(struct bodies *b, size_t pairs)
 {
-    *b = (struct bodies){ pairs, calloc(pairs, sizeof *b->motion), calloc(pairs, sizeof *b->start), calloc(pairs, sizeof *b->origin) };
-    return b->motion && b->start && b->origin;
+    *b = (struct bodies){ pairs, calloc(pairs, sizeof *b->motion), calloc(pairs, sizeof *b->start), calloc(pairs, sizeof *b->origin),
+                          calloc(pairs, sizeof *b->species) };
+    return b->motion && b->start && b->origin && b->species;
 }
 
 void bodies_free(struct bodies *b)
@@ -31,6 +32,7 @@ void bodies_free(struct bodies *b)
     free(b->motion);
     free(b->start);
     free(b->origin);
+    free(b->species);
     *b = (struct bodies){ 0 };
 }
 
@@ -106,19 +108,26 @@ static bool solve(struct check_run *run, const struct bodies *b, struct comparis
     return true;
 }
 
+struct state_row *bodies_rows(const struct bodies *b, const struct model *m)
+{
+    struct state_row *row = calloc(2 * b->pairs, sizeof *row);
+    for (size_t i = 0; row && i < 2 * b->pairs; i++) {
+        const struct theory_sphere *s = &b->start[i / 2].s[i % 2];
+        const int species = b->species[i / 2][i % 2];
+        row[i] = (struct state_row){ .id = (int)i + 1, .species = species ? species : model_species(m, s->radius) };
+        for (int k = 0; k < 3; k++)
+            row[i].x[k] = s->x[k] + b->origin[i / 2][k];
+        memcpy(row[i].u, s->u, sizeof row[i].u);
+        memcpy(row[i].w, s->w, sizeof row[i].w);
+    }
+    return row;
+}
+
 static bool ask(struct check_run *run, const char *name, json_t *scene, const struct bodies *b, const struct model *m, double dt,
                 const int *at, size_t times, struct comparison *c)
 {
-    struct state_row *start = calloc(2 * b->pairs, sizeof *start);
+    struct state_row *start = bodies_rows(b, m);
     bool good = start != NULL;
-    for (size_t i = 0; good && i < 2 * b->pairs; i++) {
-        const struct theory_sphere *s = &b->start[i / 2].s[i % 2];
-        start[i] = (struct state_row){ .id = (int)i + 1, .species = model_species(m, s->radius) };
-        for (int k = 0; k < 3; k++)
-            start[i].x[k] = s->x[k] + b->origin[i / 2][k];
-        memcpy(start[i].u, s->u, sizeof start[i].u);
-        memcpy(start[i].w, s->w, sizeof start[i].w);
-    }
     for (int r = 0; good && r < REFINEMENTS; r++) {
         int fine[64];
         char run_name[96];
@@ -219,6 +228,6 @@ void bodies_picture(struct check_run *run, const struct comparison *c, const str
 }
 
 const struct check two_bodies_checks[] = {
-    { "approach", check_approach },   { "encounter", check_encounter },       { "boltzmann", check_boltzmann },
+    { "approach", check_approach },   { "pushed", check_pushed },   { "encounter", check_encounter },       { "boltzmann", check_boltzmann },
     { "equipartition", check_equipartition }, { "metamorphic", check_metamorphic }, { NULL, NULL },
 };

@@ -10,9 +10,17 @@
 enum { REFINEMENTS = 3 };       /* dt, dt/2, dt/4 */
 
 /* Pairs at places of their own; `start` is relative to the pair's origin. */
-struct bodies { size_t pairs; struct theory_motion *motion; struct theory_pair_state *start; double (*origin)[3]; };
+struct bodies {
+    size_t pairs;
+    struct theory_motion *motion;
+    struct theory_pair_state *start;
+    double (*origin)[3];
+    int (*species)[2];      /* from 1; 0: the one with the radius */
+};
 bool bodies_make(struct bodies *b, size_t pairs);
 void bodies_free(struct bodies *b);
+/* Rows of states.csv, two to a pair. Caller frees. */
+struct state_row *bodies_rows(const struct bodies *b, const struct model *m);
 /* The forces that the scene declares; the laws live in the model, which must outlive it. */
 struct theory_motion bodies_motion(const struct model *m, double radius_1, double radius_2);
 
@@ -40,6 +48,7 @@ void bodies_picture(struct check_run *run, const struct comparison *c, const str
 
 void check_encounter(struct check_run *run);
 void check_approach(struct check_run *run);
+void check_pushed(struct check_run *run);
 void check_equipartition(struct check_run *run);
 void check_boltzmann(struct check_run *run);
 void check_metamorphic(struct check_run *run);

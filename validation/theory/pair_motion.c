@@ -1,5 +1,5 @@
 /*
- * Two spheres under lubrication, contact, drag and a constant force, as functions of time
+ * Two spheres under lubrication, contact, drag and constant forces and torques, as functions of time
  *
  *     m_a dU_a/dt = F_a ,   I_a dW_a/dt = T_a ,   dx_a/dt = U_a ,   m = (4/3) pi rho a^3 ,   I = (2/5) m a^2
  *
@@ -17,7 +17,14 @@
  *
  *     v(h) = v(h_0) - (1/m_eff) int_h^h0 X_A dh' ,   1/m_eff = 1/m_1 + 1/m_2
  *
- * with X_A = A/xi + B ln(1/xi), xi = 2 h/(a_1 + a_2), frozen below the inner gap. Source: Newton's second law; Li (2026) eq 3.8.
+ * with X_A = A/xi + B ln(1/xi), xi = 2 h/(a_1 + a_2), frozen below the inner gap. With drag zeta_a and constant forces F_a along the line
+ * of centres n too, the two momentum balances, each divided by its zeta_a, have as their difference the integral
+ *
+ *     h - h_0 + S/zeta + [(m_2/zeta_2) dU_2 - (m_1/zeta_1) dU_1].n = V t ,   V = (F_2/zeta_2 - F_1/zeta_1).n ,   1/zeta = 1/zeta_1 + 1/zeta_2
+ *
+ * S the integral of X_A from h_0 to h, dU what the velocities have changed by. Without inertia, the bracket, it is h(t) of the overdamped
+ * approach, solved for t; without the 1 beside X_A/zeta >> 1 and the logarithm, h = h_0 exp(V zeta t/(A (a_1 + a_2)/2)).
+ * Source: Newton's second law; Li (2026) eq 3.8.
  * Second origins (tests/theory_pair_test.c): the closed form against the solution in time; linear momentum, and the energy that
  * friction takes; a sphere alone (free_sphere.c); the quadrature of X_A.
  */
@@ -127,7 +134,7 @@ static int derivative(double t, const double y[], double dydt[], void *model)
         for (int k = 0; k < 3; k++) {
             d[k] = p.s[a].u[k];
             d[3 + k] = (force[k] + lubrication.force[a][k] + contact.force[a][k] + m->applied[a][k]) / mass;
-            d[6 + k] = (torque[k] + lubrication.torque[a][k] + contact.torque[a][k]) / inertia;
+            d[6 + k] = (torque[k] + lubrication.torque[a][k] + contact.torque[a][k] + m->applied_torque[a][k]) / inertia;
         }
     }
     return GSL_SUCCESS;
@@ -148,6 +155,11 @@ bool theory_pair_motion(const struct theory_motion *model, double duration, doub
     for (int a = 0; a < 2; a++)
         for (int k = 0; k < 3; k++)
             speed = fmax(speed, fmax(fabs(p->s[a].u[k]), size * fabs(p->s[a].w[k])));
+    for (int a = 0; a < 2; a++) {       /* from rest: what the forces make of it alone */
+        const double mass = theory_sphere_mass(model, a), relaxation = mass / (6.0 * PI * model->viscosity * model->radius[a]);
+        for (int k = 0; k < 3; k++)
+            speed = fmax(speed, fabs(model->applied[a][k]) / mass * (model->drag ? fmin(duration, relaxation) : duration));
+    }
     for (int v = 0; v < VARIABLES; v++)
         scale[v] = v >= HISTORY ? 1e-2 * size : v % PER_SPHERE < 3 ? size : v % PER_SPHERE < 6 ? speed : speed / size;
     pack(p, y);

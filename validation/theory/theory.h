@@ -113,7 +113,7 @@ struct theory_motion {
     const struct theory_contact *contact;
     bool drag, drag_torque;
     double viscosity, gradient[3][3];       /* of the drag and of the flow U_inf = G x */
-    double applied[2][3];                   /* constant forces */
+    double applied[2][3], applied_torque[2][3];     /* constant */
 };
 struct theory_pair_state { struct theory_sphere s[2]; double history[3]; /* of surface 1 against 2 */ };
 double theory_sphere_mass(const struct theory_motion *m, int which);
