@@ -131,6 +131,45 @@ static void friction_keeps_momenta_and_takes_energy(void)
     check_true(touched && slid, "the pair has touched and slid");
 }
 
+/* One encounter by the equations of both spheres in the laboratory, in short steps, its stress by trapezoids. */
+static void encounters_of_the_symmetric_pair(void)
+{
+    const struct theory_lubrication near = { 0.7, 0.1, 0.3, false };
+    const struct theory_contact contact = { .normal_stiffness = 2000.0 };
+    struct theory_motion m = { .radius = { 1.3, 1.3 }, .density = { 0.05, 0.05 }, .lubrication = &near, .contact = &contact, .drag = true,
+                               .drag_torque = true, .viscosity = 0.7 };
+    m.gradient[0][1] = 1.3;
+    const double y0 = 0.6, z0 = 0.4, reach = 2.3 * 1.3, step = 2e-3;
+    double impulse[2][3], end[3], sum[2][3] = { { 0 } };
+    check_true(theory_encounter(&m, y0, z0, 1e-10, impulse, end), "it leaves");
+    const double r[3] = { -sqrt(reach * reach - y0 * y0 - z0 * z0) * (1 - 1e-12), y0, z0 };
+    struct theory_pair_state p = { .s = { { .radius = 1.3, .w = { 0, 0, -0.65 } }, { .radius = 1.3, .w = { 0, 0, -0.65 } } } };
+    for (int k = 0; k < 3; k++)
+        for (int a = 0; a < 2; a++)
+            p.s[a].x[k] = (a ? 0.5 : -0.5) * r[k];
+    for (int a = 0; a < 2; a++)
+        p.s[a].u[0] = 1.3 * p.s[a].x[1];
+    for (int n = 0; n < 3500; n++) {
+        struct theory_pair part[2];
+        const double none[3] = { 0 };
+        theory_contact_pair(&contact, p.s, none, &part[0]);
+        theory_lubrication_pair(&near, p.s, &part[1]);
+        for (int k = 0; k < 2; k++) {
+            sum[k][0] += (n ? 1.0 : 0.5) * step * 0.5 * (part[k].stress[0][1] + part[k].stress[1][0]);
+            sum[k][1] += (n ? 1.0 : 0.5) * step * (part[k].stress[0][0] - part[k].stress[1][1]);
+            sum[k][2] += (n ? 1.0 : 0.5) * step * (part[k].stress[1][1] - part[k].stress[2][2]);
+        }
+        check_true(theory_pair_motion(&m, step, 1e-8, &p), "reaches its end");
+    }
+    check_true(p.s[1].x[0] - p.s[0].x[0] > end[0], "they have parted");
+    for (int k = 0; k < 6; k++)
+        check_close(sum[k / 3][k % 3], impulse[k / 3][k % 3], 3e-4 * fabs(impulse[k / 3][0]) + 2e-3, "time integral of the stress");
+    double few[2][3], more[2][3];
+    m.lubrication = NULL;
+    check_true(theory_sheared_pairs(&m, 6, 4, few) && theory_sheared_pairs(&m, 10, 6, more), "all leave");
+    check_relative(few[0][0], more[0][0], 1e-3, "Gauss points");
+}
+
 /* Virial coefficients 4, 10 (exact) and 18.365 (which the formula rounds to 18); the diameter by the midpoint rule. */
 static void hard_spheres_have_their_virials(void)
 {
@@ -148,6 +187,7 @@ static const struct unit_test tests[] = {
     { "head-on approach: closed form, momentum", squeezing_in_time_is_the_closed_form },
     { "two spheres far apart are free", far_apart_each_is_free },
     { "oblique collision: momenta, energy, cap", friction_keeps_momenta_and_takes_energy },
+    { "one encounter in shear: the symmetric pair, and both spheres", encounters_of_the_symmetric_pair },
     { "hard spheres: virial coefficients, thermal diameter", hard_spheres_have_their_virials },
     { NULL, NULL },
 };

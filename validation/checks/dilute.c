@@ -9,7 +9,7 @@
  * The second is a quadrature over many isolated pairs (Gauss points in ln of the gap, product rule over directions), in which each
  * stress is the candidate's; the points are exact for the direction and good to 1e-10 for the gap.
  */
-#include "pair.h"
+#include "two_bodies.h"
 
 #include <gsl/gsl_integration.h>
 #include <math.h>
@@ -289,4 +289,5 @@ static void check_crowd(struct check_run *run)
 }
 
 const struct check dilute_checks[] = {
-    { "dilute-einstein", check_einstein }, { "dilute-phi2", check_phi2 }, { "dilute-crowd", check_crowd }, { NULL, NULL } };
+    { "dilute-einstein", check_einstein }, { "dilute-phi2", check_phi2 }, { "dilute-crowd", check_crowd },
+    { "sheared-pairs", check_sheared_pairs }, { NULL, NULL } };

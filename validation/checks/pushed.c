@@ -105,7 +105,7 @@ static void judge_balance(struct check_run *run, const struct model *m, const st
                 slow += p->mass[side] / p->zeta[side] * fabs(p->force[side]) / p->zeta[side];
             }
             worst_see(&exact, moved + inertia, travel, fabs(travel), k);
-            /* the bracket is at most the sum of what free spheres would have: judged in units of it, beyond a twentieth */
+            /* the bracket is at most what free spheres would have at their terminal speeds: judged in units of that */
             worst_see(&overdamped, moved, travel, slow, k);
         }
     const double *a = b->motion[exact.at].radius, *o = b->motion[overdamped.at].radius;

@@ -52,5 +52,6 @@ void check_pushed(struct check_run *run);
 void check_equipartition(struct check_run *run);
 void check_boltzmann(struct check_run *run);
 void check_metamorphic(struct check_run *run);
+void check_sheared_pairs(struct check_run *run);
 
 #endif

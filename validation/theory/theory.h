@@ -8,6 +8,7 @@
 #define THEORY_H
 
 #include <stdbool.h>
+#include <stddef.h>
 
 /* A sphere of a pair: radius [L], position [L], velocity [L/T], spin [1/T]. */
 struct theory_sphere { double radius, x[3], u[3], w[3]; };
@@ -121,6 +122,14 @@ double theory_sphere_mass(const struct theory_motion *m, int which);
 bool theory_pair_motion(const struct theory_motion *m, double duration, double tolerance, struct theory_pair_state *p);
 /* The integral of X_A over the gap h from `from` to `to`: momentum that squeezing takes from a pair, in closed form. */
 double theory_squeeze_integral(const struct theory_lubrication *law, double a1, double a2, double from, double to);
+
+/*
+ * Encounters of equal spheres in steady shear (encounters.c), flow x, gradient y, rate gradient[0][1] > 0, no friction. One of them, coming from
+ * far upstream at y0 > 0 and z0: time integrals of F (x) r, [contact, lubrication][symmetric xy, xx - yy, yy - zz]; `end`: the place where
+ * it leaves. False: it does not leave. And what all of them add to stress/(eta rate phi^2), by radial x angular Gauss points.
+ */
+bool theory_encounter(const struct theory_motion *m, double y0, double z0, double tolerance, double impulse[2][3], double end[3]);
+bool theory_sheared_pairs(const struct theory_motion *m, size_t radial, size_t angular, double coefficient[2][3]);
 
 /* Equal spheres at equilibrium: P/(n kT) of the hard-sphere fluid, and the diameter of spheres with the contact k_n (hard_spheres.c). */
 double theory_carnahan_starling(double phi);
