@@ -180,6 +180,13 @@ static void hard_spheres_have_their_virials(void)
     for (double r = 0.5 * step; r < 2.6; r += step)
         sigma += step * (1.0 - exp(-0.5 * k_n * (2.6 - r) * (2.6 - r) / kT));
     check_close(theory_thermal_diameter(1.3, k_n, kT), sigma, 1e-7, "thermal diameter");
+    /* mixtures: one size said twice is one size; at low density 1 + sum x_i x_j n (2 pi/3) sigma_ij^3 */
+    const double twice[2] = { 0.03, 0.05 }, same[2] = { 2.0, 2.0 }, sparse[2] = { 1e-6, 3e-6 }, d[2] = { 2.0, 2.8 };
+    check_relative(theory_mixture_pressure(2, twice, same), theory_carnahan_starling(0.08 * M_PI / 6.0 * 8.0), 1e-14, "one size twice");
+    double second = 0.0;
+    for (int k = 0; k < 4; k++)
+        second += sparse[k / 2] * sparse[k % 2] / 4e-6 * 2.0 * M_PI / 3.0 * gsl_pow_3(0.5 * (d[k / 2] + d[k % 2]));
+    check_relative(theory_mixture_pressure(2, sparse, d) - 1.0, second, 2e-4, "second virial coefficient of a mixture");
 }
 
 static const struct unit_test tests[] = {

@@ -1,10 +1,10 @@
 /*
  * Layer 6: pressure of Brownian spheres at rest
  *
- *     - tr(contact stress)/3 = n kT (Z(phi') - 1) ,   phi' = (pi/6) n sigma^3 ,   Z of Carnahan & Starling, sigma the thermal diameter
+ *     - tr(contact stress)/3 = n kT (Z - 1) ,   Z of Carnahan & Starling for one size, of Boublik and Mansoori et al. for a mixture
  *
- * (theory/hard_spheres.c). Equilibrium knows nothing of friction with the fluid, so this holds whatever the drag; it sees the sum of
- * everything: neighbour lists, images, the factor of the pair stress, the temperature that the contacts feel.
+ * at the thermal diameters (theory/hard_spheres.c). Equilibrium knows nothing of friction with the fluid, so this holds whatever the drag
+ * and the lubrication, as long as their noise belongs to them and the integrator keeps the equilibrium; it sees the sum of everything: neighbour lists, images, the factor of the pair stress, the temperature that the contacts feel.
  *
  * Independent realisations, each from spheres placed at random without overlap with Maxwell velocities: collisions make an
  * equilibrium of that in some tens of collision times, which are discarded. One number per realisation, so that the standard
@@ -14,7 +14,6 @@
 #include "dense.h"
 #include "packing.h"
 #include "pair.h"
-#include "single.h"
 #include "statistics.h"
 
 #include <stdlib.h>
@@ -41,21 +40,22 @@ static double mean_pressure(struct check_run *run, const char *out, double disca
     return rows > 0.0 ? sum / rows : NAN;
 }
 
-static struct state_row *start_spheres(struct check_run *run, const struct model *m, int count, double edge, double kT, unsigned seed)
+static struct state_row *start_spheres(struct check_run *run, const struct model *m, const struct packing_species *kind, int count, double edge,
+                                       double kT, unsigned seed)
 {
-    const struct packing_species kind = { m->radius[0], count };
-    const struct free_sphere sphere = free_sphere(m);
     struct state_row *row = calloc((size_t)count, sizeof *row);
     char why[WHY_LENGTH] = "the gate is out of memory";
-    if (!row || !packing_make(&kind, 1, edge, 0.0, seed, row, why)) {
+    if (!row || !packing_make(kind, (int)m->species, edge, 0.0, seed, row, why)) {
         check_garbage(run, why);
         free(row);
         return NULL;
     }
     gsl_rng *random = pair_random(run);
     gsl_rng_set(random, seed);
-    for (int i = 0; i < count; i++)
-        random_vector(random, sqrt(kT / sphere.mass), row[i].u);
+    for (int i = 0; i < count; i++) {
+        const double a = kind[row[i].species - 1].radius, mass = 4.0 / 3.0 * M_PI * m->density[row[i].species - 1] * gsl_pow_3(a);
+        random_vector(random, sqrt(kT / mass), row[i].u);
+    }
     gsl_rng_free(random);
     return row;
 }
@@ -63,19 +63,25 @@ static struct state_row *start_spheres(struct check_run *run, const struct model
 void check_equation_of_state(struct check_run *run)
 {
     const json_t *parameters = run->gate_case->parameters;
-    const int count = (int)scene_number(parameters, "spheres", 0), realisations = (int)scene_number(parameters, "realisations", 0);
+    const int realisations = (int)scene_number(parameters, "realisations", 0);
     const double phi = scene_number(parameters, "phi", NAN), steps = scene_number(parameters, "steps", NAN);
     struct model m;
-    double pressure[64];
-    int answered = 0;
-    if (!model_read(run, run->gate_case->scene, &m) || realisations < 2 || realisations > 64)
+    double pressure[64], counts[4];
+    struct packing_species kind[4];
+    size_t species;
+    int answered = 0, count = 0;
+    parameter_list(parameters, "spheres", counts, &species, 4);
+    if (!model_read(run, run->gate_case->scene, &m) || realisations < 2 || realisations > 64 || species != m.species)
         return;
-    const struct packing_species kind = { m.radius[0], count };
-    const double edge = packing_edge(&kind, 1, phi), kT = scene_number(run->gate_case->scene, "fluid.kT", NAN);
+    for (size_t k = 0; k < species; k++) {
+        kind[k] = (struct packing_species){ m.radius[k], (int)counts[k] };
+        count += kind[k].count;
+    }
+    const double edge = packing_edge(kind, (int)species, phi), kT = scene_number(run->gate_case->scene, "fluid.kT", NAN);
     for (int k = 0; k < realisations; k++) {
         json_t *scene = json_deep_copy(run->gate_case->scene);
         const unsigned seed = (run->seed + (unsigned)k) & 0xffffffffu;
-        struct state_row *row = start_spheres(run, &m, count, edge, kT, seed);
+        struct state_row *row = start_spheres(run, &m, kind, count, edge, kT, seed);
         char name[32], out[PATH_LENGTH];
         snprintf(name, sizeof name, "realisation-%d", k);
         check_progress(run, "realisation %d of %d", k + 1, realisations);
@@ -94,14 +100,19 @@ void check_equation_of_state(struct check_run *run)
         if (answered <= k)
             return;
     }
-    double mean;
-    const double n = count / gsl_pow_3(edge), sigma = theory_thermal_diameter(m.radius[0], m.contact.normal_stiffness, kT);
+    double mean, sigma[4], density[4], packed = 0.0;
+    const double n = count / gsl_pow_3(edge);
+    for (size_t k = 0; k < species; k++) {
+        sigma[k] = theory_thermal_diameter(m.radius[k], m.contact.normal_stiffness, kT);
+        density[k] = kind[k].count / gsl_pow_3(edge);
+        packed += M_PI / 6.0 * density[k] * gsl_pow_3(sigma[k]);
+    }
     const struct interval one = statistics_mean_interval(pressure, (size_t)realisations, 0.682689, &mean);   /* one standard error */
-    const double expected = theory_carnahan_starling(M_PI / 6.0 * n * gsl_pow_3(sigma)) - 1.0, measured = mean / (n * kT);
+    const double expected = (species == 1 ? theory_carnahan_starling(packed) : theory_mixture_pressure((int)species, density, sigma)) - 1.0;
+    const double measured = mean / (n * kT);
     struct result *r = check_interval(run, MODEL, "contact pressure", measured, 0.5 * (one.high - one.low) / (n * kT), expected,
-                                      run->gate_case->tolerance * expected,
-                                      "the contact pressure at rest is %.4g n kT; Carnahan and Starling give %.4g at the thermal diameter %.4g", measured,
-                                      expected, sigma);
-    result_notes(r, "%d realisations of %d spheres at phi %.3g (%.4g with the thermal diameter): %.4g +- %.2g", realisations, count, phi,
-                 M_PI / 6.0 * n * gsl_pow_3(sigma), measured, 0.5 * (one.high - one.low) / (n * kT));
+                                      run->gate_case->tolerance * expected, "the contact pressure at rest is %.4g n kT; %s give %.4g at the "
+                                      "thermal diameters", measured, species == 1 ? "Carnahan and Starling" : "Boublik and Mansoori et al.", expected);
+    result_notes(r, "%d realisations of %d spheres at phi %.3g (%.4g with the thermal diameters): %.4g +- %.2g", realisations, count, phi, packed,
+                 measured, 0.5 * (one.high - one.low) / (n * kT));
 }

@@ -90,4 +90,5 @@ bool track_ask(struct check_run *run, const char *name, json_t *scene, const str
     return false;
 }
 
-const struct check single_checks[] = { { "single-langevin", check_langevin }, { "single-shear", check_shear }, { "single-tether", check_tether }, { NULL, NULL } };
+const struct check single_checks[] = { { "single-langevin", check_langevin }, { "single-shear", check_shear }, { "single-tether", check_tether },
+                                       { "single-stages", check_stages },     { NULL, NULL } };

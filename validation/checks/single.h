@@ -27,5 +27,6 @@ struct free_sphere free_sphere(const struct model *m);
 void check_langevin(struct check_run *run);
 void check_shear(struct check_run *run);
 void check_tether(struct check_run *run);
+void check_stages(struct check_run *run);
 
 #endif

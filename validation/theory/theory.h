@@ -98,6 +98,16 @@ void theory_free_sphere(const double G[3][3], double relaxation, double spin_rel
                         struct theory_sphere *now);
 
 /*
+ * The same in stages of shears with changing rates (driven_sphere.c). `open`: axes that are not periodic; with periodic gradient axes
+ * the flow's acceleration carries the sphere along. And the flow itself: G(t), and the way |rate| of each stage's first shear integrates to.
+ */
+struct theory_rate { int flow, gradient; double mean, slope, amplitude, frequency, phase; };
+struct theory_stage { double duration; size_t shears; struct theory_rate shear[4]; };
+bool theory_driven_sphere(const struct theory_stage *stage, size_t stages, const bool open[3], double relaxation, double spin_relaxation, double t,
+                          const struct theory_sphere *start, struct theory_sphere *now);
+void theory_driven_flow(const struct theory_stage *stage, size_t stages, double t, double G[3][3], double *travelled);
+
+/*
  * Coefficient c of sigma_xy = c phi^2 eta rate from the lubrication of affinely moving, affinely spinning (W = Omega_inf) equal spheres
  * placed at random (g = 1 beyond contact), by quadrature over gap and direction. About 9.7 for gaps 1e-3 to 0.05.
  */
@@ -131,8 +141,9 @@ double theory_squeeze_integral(const struct theory_lubrication *law, double a1, 
 bool theory_encounter(const struct theory_motion *m, double y0, double z0, double tolerance, double impulse[2][3], double end[3]);
 bool theory_sheared_pairs(const struct theory_motion *m, size_t radial, size_t angular, double coefficient[2][3]);
 
-/* Equal spheres at equilibrium: P/(n kT) of the hard-sphere fluid, and the diameter of spheres with the contact k_n (hard_spheres.c). */
+/* Spheres at equilibrium: P/(n kT) of the hard-sphere fluid, of a mixture from number densities and diameters, and the diameter of spheres with the contact k_n (hard_spheres.c). */
 double theory_carnahan_starling(double phi);
+double theory_mixture_pressure(int species, const double density[], const double diameter[]);
 double theory_thermal_diameter(double radius, double stiffness, double kT);
 
 #endif
