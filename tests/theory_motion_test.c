@@ -192,6 +192,44 @@ static void crowd_does_not_care_how_the_lattice_is_told(void)
     gsl_rng_free(rng);
 }
 
+/* Streamlines in any history of the rates, steady shear by the matrix exponential, and a spin that lags behind an oscillation. */
+static void driven_sphere_by_closed_forms(void)
+{
+    const struct theory_stage stage[3] = {
+        { 0.8, 2, { { 0, 1, 0.3, 0.0, 1.1, 2.7, 0.4 }, { 2, 1, -0.7, 0.5, 0.0, 1.0, 0.0 } } }, { 0.5, 0, { { 0 } } }, { 2.0, 1, { { 0, 1, -1.3, 0, 0, 1, 0 } } } };
+    const bool periodic[3] = { false, false, false }, open[3] = { false, true, false };
+    const double G0 = 0.3 + 1.1 * sin(0.4), tau = 0.31, spin_tau = 0.1;
+    const double S = 0.3 * 0.8 + 1.1 / 2.7 * (cos(0.4) - cos(2.7 * 0.8 + 0.4)) - 1.3 * 0.6, Sz = -0.7 * 0.8 + 0.25 * 0.64;
+    const struct theory_sphere with = { .radius = 1, .x = { 1, 2, 3 }, .u = { 2 * G0, 0, -1.4 } };
+    struct theory_sphere now, other, far;
+    check_true(theory_driven_sphere(stage, 3, periodic, tau, spin_tau, 1.9, &with, &now), "reaches its end");
+    check_close(now.x[0], 1 + 2 * S, 1e-11, "streamline along x");
+    check_close(now.x[2], 3 + 2 * Sz, 1e-11, "streamline along z");
+    check_close(now.u[0], -1.3 * 2, 1e-11, "moves with the flow of the moment");
+    /* an open axis: nothing carries it along, at rest it relaxes */
+    check_true(theory_driven_sphere(stage, 1, open, tau, spin_tau, 0.8, &with, &now) && theory_driven_sphere(stage, 1, open, tau, spin_tau, 3.8, &with, &far), "end");
+    check_close(far.u[2], now.u[2] * exp(-3.0 / tau), 1e-11, "a stop of the flow leaves its velocity to the drag");
+    const double G[3][3] = { { 0, -1.3, 0 } };
+    const struct theory_sphere thrown = { .radius = 1, .x = { 1, 2, 3 }, .u = { 3, -2, 1 }, .w = { 1, -1, 2 } };
+    theory_free_sphere(G, tau, spin_tau, 1.7, &thrown, &other);
+    check_true(theory_driven_sphere(&stage[2], 1, open, tau, spin_tau, 1.7, &thrown, &now), "end");
+    for (int k = 0; k < 3; k++) {
+        check_close(now.x[k], other.x[k], 1e-10, "steady: place");
+        check_close(now.u[k], other.u[k], 1e-10, "steady: velocity");
+        check_close(now.w[k], other.w[k], 1e-10, "steady: spin");
+    }
+    /* w' = (- sin(f t)/2 - w)/T goes over to - sin(f t - atan(f T))/(2 sqrt(1 + f^2 T^2)) */
+    const struct theory_stage swing = { 60.0, 1, { { 0, 1, 0.0, 0.0, 1.0, 4.0, 0.0 } } };
+    check_true(theory_driven_sphere(&swing, 1, periodic, tau, spin_tau, 5.0, &with, &now), "end");
+    check_close(now.w[2], -0.5 * sin(20.0 - atan(0.4)) / sqrt(1.16), 1e-11, "phase lag of the spin");
+    double way, flow[3][3];
+    theory_driven_flow(stage, 3, 1.9, flow, &way);
+    const double back = (M_PI + asin(0.3 / 1.1) - 0.4) / 2.7, there = 0.3 * back + 1.1 / 2.7 * (cos(0.4) - cos(2.7 * back + 0.4));
+    const double whole = 0.3 * 0.8 + 1.1 / 2.7 * (cos(0.4) - cos(2.7 * 0.8 + 0.4));
+    check_close(way, (back < 0.8 ? 2 * there - whole : whole) + 1.3 * 0.6, 1e-6, "way travelled");
+    check_close(flow[0][1], -1.3, 0, "flow of the moment");
+}
+
 static const struct unit_test tests[] = {
     { "drag: power and Einstein's slope", drag_power_and_einstein_slope },
     { "Langevin agrees with quadrature and with Li", langevin_agrees_with_quadrature_and_with_li },
@@ -199,6 +237,7 @@ static const struct unit_test tests[] = {
     { "a free sphere agrees with simple shear by hand", free_sphere_agrees_with_simple_shear_by_hand },
     { "phi^2 coefficient agrees with the closed average", phi2_coefficient_agrees_with_the_closed_average },
     { "a crowd does not care how its lattice is told", crowd_does_not_care_how_the_lattice_is_told },
+    { "a sphere in driven flows agrees with closed forms", driven_sphere_by_closed_forms },
     { NULL, NULL }
 };
 

@@ -23,6 +23,7 @@
 struct box {
     mat3 start;                     /* H(0)              [L] */
     mat3 gradient;                  /* G                 [1/T] */
+    mat3 image_gradient;            /* G that the velocities of the moment belong to: of the middle of the step between its two kicks */
     struct flow *flow;              /* G(t); NULL: steady */
     bool periodic[3];
     bool flowing;                   /* G is not zero */

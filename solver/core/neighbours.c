@@ -97,7 +97,7 @@ static void offsets_move(struct neighbours *n, const struct box *box)
 {
     for (int k = 0; k < n->offset_count; k++) {
         n->offset[k].position = box_offset(box, n->offset[k].shift);
-        n->offset[k].velocity = box_flow(box, n->offset[k].position);
+        n->offset[k].velocity = mat3_times(&box->image_gradient, n->offset[k].position);
     }
 }
 

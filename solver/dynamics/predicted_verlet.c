@@ -58,6 +58,7 @@ static bool predicted_step(const struct dynamics *self, struct suspension *s, bo
             half->spin[i] = p->spin[i];
     }
     kick(s, 0.5 * s->dt);                                   /* predicts, with the old forces */
+    s->box.image_gradient = s->box.gradient;                /* so drag is second order in a flow that changes; images of pairs are not */
     struct moment now = moment_of(s, s->dt);
     now.drift_velocity = half->velocity;
     now.drift_spin = half->spin;

@@ -21,7 +21,7 @@ static void drag_add(const struct force *self, struct particles *p, struct near_
     (void)near;
     for (int i = 0; i < p->count; i++) {
         const double a = radius_of(p, i);
-        const vec3 lag = minus(box_flow(box, p->position[i]), p->velocity[i]);
+        const vec3 lag = minus(mat3_times(&box->image_gradient, p->position[i]), p->velocity[i]);
         p->force[i] = plus(p->force[i], scaled(lag, drag_of(law, a)));
         if (law->torque)
             p->torque[i] = plus(p->torque[i], scaled(minus(box->spin, p->spin[i]), spin_drag_of(law, a)));
