@@ -53,5 +53,6 @@ void check_equipartition(struct check_run *run);
 void check_boltzmann(struct check_run *run);
 void check_metamorphic(struct check_run *run);
 void check_sheared_pairs(struct check_run *run);
+void check_observers(struct check_run *run);
 
 #endif

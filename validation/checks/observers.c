@@ -1,0 +1,517 @@
+/*
+ * Layer 6: what a candidate says it has measured, against what its own trajectory says
+ *
+ * One run of a sheared crowd writes places, velocities, spins and stresses, and the tables of docs/formats.md, all at the same steps. From the
+ * former the gate computes the latter anew, images by brute force, by the definitions in that document: no physics enters, so the numbers
+ * must agree to rounding. A table that the candidate does not write is skipped. Last, the run without tables must take the same path:
+ *
+ *     displacement, velocity_correlation    <dx^2>, <dtheta^2> without the affine part, <c c>, <w w>, by species against lag
+ *     pair_distribution                     pairs of every image counted, over those of an ideal gas
+ *     contacts, temperature                 contact numbers with and without rattlers; <m c^2>, <I w^2>, spins of nearest neighbours
+ *     viscosity, brownian_stress            parts over eta rate, N1, N2, pressure; -(kT/V) a/(shell + depth) n n
+ */
+#include "packing.h"
+#include "two_bodies.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct near_pair { size_t i, j; double n[3], distance, gap; };
+struct film {
+    struct check_run *run;
+    json_t *scene;
+    struct model m;
+    struct state_row *row;
+    struct track track;
+    struct near_pair **near;        /* of each frame, all images within `range` */
+    size_t count, frames, *nears;
+    int every;
+    double dt, kT, range;
+    char out[PATH_LENGTH];
+};
+
+static double radius(const struct film *f, size_t i) { return f->m.radius[f->row[i].species - 1]; }
+static double mass(const struct film *f, size_t i) { return 4.0 / 3.0 * M_PI * f->m.density[f->row[i].species - 1] * gsl_pow_3(radius(f, i)); }
+
+/* Velocity and spin without those of the flow. */
+static void peculiar(const struct film *f, const struct track_point *p, double c[3], double w[3])
+{
+    double G[3][3];
+    memcpy(G, f->m.gradient, sizeof G);
+    apply(G, p->x, c);
+    for (int k = 0; k < 3; k++) {
+        c[k] = p->u[k] - c[k];
+        w[k] = p->w[k] - 0.5 * (G[(k + 2) % 3][(k + 1) % 3] - G[(k + 1) % 3][(k + 2) % 3]);
+    }
+}
+
+/* All pairs of a frame, whose cell is that of its time. */
+static bool find_pairs(struct film *f, size_t frame)
+{
+    struct model now;
+    json_t *scene = json_deep_copy(f->scene);
+    double inverse[3][3];
+    size_t room = 0;
+    scene_set(scene, "start.time", json_real((double)frame * f->every * f->dt));
+    bool good = model_read(f->run, scene, &now);
+    json_decref(scene);
+    for (int v = 0; v < 3; v++) {
+        cross(now.cell[(v + 1) % 3], now.cell[(v + 2) % 3], inverse[v]);
+        for (int c = 0; c < 3; c++)
+            inverse[v][c] /= now.volume;
+    }
+    for (size_t j = 1; good && j < f->count; j++)
+        for (size_t i = 0; i < j; i++) {
+            const double *a = track_at(&f->track, frame, i)->x, *b = track_at(&f->track, frame, j)->x, d[3] = { b[0] - a[0], b[1] - a[1], b[2] - a[2] };
+            double share[3];
+            apply(inverse, d, share);
+            for (int image = 0; image < 125; image++) {
+                const int step[3] = { image % 5 - 2, image / 5 % 5 - 2, image / 25 - 2 };
+                struct near_pair p = { .i = i, .j = j };
+                for (int v = 0; v < 3; v++)
+                    for (int c = 0; c < 3; c++)
+                        p.n[c] += (share[v] - round(share[v]) + step[v]) * now.cell[v][c];
+                p.distance = norm(p.n);
+                p.gap = p.distance - radius(f, i) - radius(f, j);
+                if (p.distance >= f->range)
+                    continue;
+                for (int c = 0; c < 3; c++)
+                    p.n[c] /= p.distance;
+                if (f->nears[frame] == room)
+                    f->near[frame] = realloc(f->near[frame], (room = 2 * room + 64) * sizeof p);
+                f->near[frame][f->nears[frame]++] = p;
+            }
+        }
+    return good;
+}
+
+/* False where the candidate has not written the table (skipped) or it cannot be read (recorded). */
+static bool open_table(const struct film *f, const char *file, const char *columns, struct table *t)
+{
+    char path[PATH_LENGTH], why[WHY_LENGTH];
+    path_join(path, f->out, file);
+    FILE *there = fopen(path, "r");
+    if (!there) {
+        check_skip(f->run, file, "the candidate writes no %s", file);
+        return false;
+    }
+    fclose(there);
+    if (table_read(path, columns, t, why) && t->rows > 0)
+        return true;
+    check_garbage(f->run, why);
+    return false;
+}
+
+/* The frame of a row whose first column is the step. */
+static size_t frame_of(const struct film *f, const struct table *t, size_t row)
+{
+    const double frame = table_at(t, row, 0) / f->every;
+    return frame >= 0 && frame < (double)f->frames && frame == floor(frame) ? (size_t)frame : f->frames;
+}
+
+static void judge(const struct film *f, const char *what, const struct worst *w)
+{
+    check_error(f->run, INVARIANT, what, w->measured, w->expected, w->error, f->run->gate_case->tolerance,
+                "%s: row %zu says %s; its own trajectory says that", what, w->at + 1, compare(w));
+}
+
+/* --- at each moment --- */
+
+static void temperatures(const struct film *f, size_t frame, int species, double T[6])
+{
+    double of = 0.0;
+    memset(T, 0, 6 * sizeof *T);
+    for (size_t i = 0; i < f->count; i++) {
+        double c[3], w[3];
+        if (species && f->row[i].species != species)
+            continue;
+        peculiar(f, track_at(&f->track, frame, i), c, w);
+        of += 1.0;
+        for (int k = 0; k < 3; k++) {
+            T[k] += mass(f, i) * c[k] * c[k];
+            T[3 + k] += 0.4 * mass(f, i) * gsl_pow_2(radius(f, i)) * w[k] * w[k];
+        }
+    }
+    for (int k = 0; k < 6; k++)
+        T[k] /= of;
+}
+
+static bool in_range(const struct film *f, const struct near_pair *p)
+{
+    const double mean = 0.5 * (radius(f, p->i) + radius(f, p->j));
+    return p->gap <= (f->m.has_lubrication ? f->m.lubrication.outer_gap * mean : 0.0);
+}
+
+static double spins_of_neighbours(const struct film *f, size_t frame)
+{
+    double together = 0.0, alone = 0.0;
+    for (size_t i = 0; i < f->count; i++) {
+        const struct near_pair *nearest = NULL;
+        double c[3], own[3], other[3];
+        for (size_t k = 0; k < f->nears[frame]; k++) {
+            const struct near_pair *p = &f->near[frame][k];
+            if ((p->i == i || p->j == i) && in_range(f, p) && (!nearest || p->gap < nearest->gap))
+                nearest = p;
+        }
+        if (!nearest)
+            continue;
+        peculiar(f, track_at(&f->track, frame, i), c, own);
+        peculiar(f, track_at(&f->track, frame, nearest->i == i ? nearest->j : nearest->i), c, other);
+        together += dot(own, other);
+        alone += dot(own, own);
+    }
+    return alone > 0 ? together / alone : 0.0;
+}
+
+static void judge_temperature(const struct film *f)
+{
+    struct table t;
+    char columns[200];
+    struct worst w = WORST_NONE, spins = WORST_NONE;
+    const char *one = json_string_value(scene_get(json_array_get(scene_get(f->scene, "species"), 0), "name"));
+    const char *two = json_string_value(scene_get(json_array_get(scene_get(f->scene, "species"), 1), "name"));
+    snprintf(columns, sizeof columns, "step,T_x,T_y,T_z,T,W_x,W_y,W_z,W,T_%s,W_%s,T_%s,W_%s,spin_neighbours", one, one, two, two);
+    if (!open_table(f, "temperature.csv", columns, &t))
+        return;
+    for (size_t r = 0; r < t.rows; r++) {
+        const size_t frame = frame_of(f, &t, r);
+        double T[3][6];
+        if (frame == f->frames)
+            continue;
+        for (int k = 0; k < 3; k++)
+            temperatures(f, frame, k, T[k]);
+        for (size_t k = 0; k < 3; k++) {
+            worst_see(&w, table_at(&t, r, 1 + k), T[0][k], f->kT, r);
+            worst_see(&w, table_at(&t, r, 5 + k), T[0][3 + k], f->kT, r);
+            for (size_t part = 0; part < 2; part++)
+                worst_see(&w, table_at(&t, r, k ? 7 + 2 * k + part : 4 + 4 * part), (T[k][3 * part] + T[k][3 * part + 1] + T[k][3 * part + 2]) / 3.0, f->kT, r);
+        }
+        worst_see(&spins, table_at(&t, r, 13), spins_of_neighbours(f, frame), 1.0, r);
+    }
+    table_free(&t);
+    judge(f, "temperature.csv", &w);
+    judge(f, "temperature.csv: spins of nearest neighbours", &spins);
+}
+
+/* Contact number, that of the backbone, and how many rattle: taken away as long as some have fewer contacts than hold a place. */
+static void count_contacts(const struct film *f, size_t frame, double out[4])
+{
+    const int needed = f->m.contact.friction > 0 ? 2 : 4;
+    bool *gone = calloc(f->count, sizeof *gone);
+    int *touches = calloc(f->count, sizeof *touches);
+    size_t rattlers = 0, before;
+    double touching = 0.0, all = 0.0, near = 0.0;
+    do {
+        before = rattlers;
+        memset(touches, 0, f->count * sizeof *touches);
+        touching = near = 0.0;
+        for (size_t k = 0; k < f->nears[frame]; k++) {
+            const struct near_pair *p = &f->near[frame][k];
+            near += in_range(f, p);
+            if (p->gap >= 0 || gone[p->i] || gone[p->j])
+                continue;
+            touches[p->i]++;
+            touches[p->j]++;
+            touching += 1.0;
+        }
+        all = before == 0 && all == 0.0 ? touching : all;
+        for (size_t i = 0; i < f->count; i++)
+            if (!gone[i] && touches[i] < needed) {
+                gone[i] = true;
+                rattlers++;
+            }
+    } while (rattlers > before);
+    const double N = (double)f->count, left = N - (double)rattlers;
+    const double answer[4] = { 2.0 * all / N, left > 0 ? 2.0 * touching / left : 0.0, (double)rattlers, 2.0 * near / N };
+    memcpy(out, answer, sizeof answer);
+    free(gone);
+    free(touches);
+}
+
+static void judge_contacts(const struct film *f)
+{
+    static const char *const names[4] = { "contact number", "backbone", "rattlers", "pairs in range" };
+    struct table t;
+    struct worst w[4] = { WORST_NONE, WORST_NONE, WORST_NONE, WORST_NONE };
+    if (!open_table(f, "contacts.csv", "step,contacts,backbone,rattlers,near", &t))
+        return;
+    for (size_t r = 0; r < t.rows; r++) {
+        double expected[4];
+        const size_t frame = frame_of(f, &t, r);
+        if (frame == f->frames)
+            continue;
+        count_contacts(f, frame, expected);
+        for (size_t k = 0; k < 4; k++)
+            worst_see(&w[k], table_at(&t, r, 1 + k), expected[k], 1.0, r);
+    }
+    table_free(&t);
+    for (int k = 0; k < 4; k++) {
+        char what[64];
+        snprintf(what, sizeof what, "contacts.csv: %s", names[k]);
+        judge(f, what, &w[k]);
+    }
+}
+
+static void judge_viscosity(const struct film *f)
+{
+    static const char *const parts[4] = { "contact_normal", "contact_tangential", "lubrication", "drag" };
+    struct table t, stress[4];
+    struct worst w = WORST_NONE, differences = WORST_NONE;
+    const double unit = f->m.viscosity * f->m.gradient[0][1];
+    if (!open_table(f, "viscosity.csv", "step,eta_contact_normal,eta_contact_tangential,eta_lubrication,eta_drag,eta_r,N1,N2,pressure", &t))
+        return;
+    int opened = 0;
+    for (; opened < 4; opened++) {
+        char columns[400];
+        const char *p = parts[opened];
+        snprintf(columns, sizeof columns, "step,%s_xx,%s_yy,%s_zz,%s_xy,%s_yx", p, p, p, p, p);
+        if (!open_table(f, "stress.csv", columns, &stress[opened]))
+            break;
+    }
+    for (size_t r = 0; opened == 4 && r < t.rows && r < stress[0].rows; r++) {
+        double diagonal[3] = { 0 }, shear = 0.0;
+        for (size_t k = 0; k < 4; k++) {
+            const double own = 0.5 * (table_at(&stress[k], r, 4) + table_at(&stress[k], r, 5));
+            worst_see(&w, table_at(&t, r, 1 + k), own / unit, 1.0, r);
+            shear += own;
+            for (size_t c = 0; c < 3; c++)
+                diagonal[c] += table_at(&stress[k], r, 1 + c);
+        }
+        worst_see(&w, table_at(&t, r, 5), 1.0 + shear / unit, 1.0, r);
+        worst_see(&differences, table_at(&t, r, 6), diagonal[0] - diagonal[1], fabs(unit), r);
+        worst_see(&differences, table_at(&t, r, 7), diagonal[1] - diagonal[2], fabs(unit), r);
+        worst_see(&differences, table_at(&t, r, 8), -(diagonal[0] + diagonal[1] + diagonal[2]) / 3.0, fabs(unit), r);
+    }
+    for (int k = 0; k < opened; k++)
+        table_free(&stress[k]);
+    table_free(&t);
+    judge(f, "viscosity.csv: parts and their sum", &w);
+    judge(f, "viscosity.csv: N1, N2, pressure", &differences);
+}
+
+static void judge_brownian(const struct film *f)
+{
+    static const char kinds[4][5] = { "wide", "thin", "zero", "raw" };
+    struct table t;
+    struct worst w = WORST_NONE;
+    char columns[600] = "step";
+    for (int k = 0; k < 4; k++) {
+        const size_t used = strlen(columns);
+        snprintf(columns + used, sizeof columns - used, ",%s_xx,%s_yy,%s_zz,%s_xy,%s_xz,%s_yz", kinds[k], kinds[k], kinds[k], kinds[k], kinds[k], kinds[k]);
+    }
+    if (!open_table(f, "brownian_stress.csv", columns, &t))
+        return;
+    const double depth = sqrt(M_PI * f->kT / (2.0 * f->m.contact.normal_stiffness));
+    for (size_t r = 0; r < t.rows; r++) {
+        const size_t frame = frame_of(f, &t, r);
+        double S[4][6] = { { 0 } };
+        for (size_t k = 0; frame < f->frames && k < f->nears[frame]; k++)
+            for (int kind = 0; kind < 4; kind++)
+                for (int side = 0; side < 2; side++) {
+                    const struct near_pair *p = &f->near[frame][k];
+                    const double a = radius(f, side ? p->j : p->i), shell = kind == 1 ? 0.02 * a : 0.05 * a;
+                    for (int c = 0; kind != 2 && p->gap < shell && c < 6; c++)
+                        S[kind][c] -= f->kT / f->m.volume * a / (shell + (kind == 3 ? 0.0 : depth)) * p->n[c < 3 ? c : c == 5] * p->n[c < 3 ? c : c == 3 ? 1 : 2];
+                }
+        for (int c = 0; c < 6; c++)
+            S[2][c] = S[1][c] + (S[1][c] - S[0][c]) * 0.02 / 0.03;      /* on a straight line to no shell */
+        for (size_t k = 0; frame < f->frames && k < 24; k++)
+            worst_see(&w, table_at(&t, r, 1 + k), S[k / 6][k % 6], (double)f->count * f->kT / f->m.volume, r);
+    }
+    table_free(&t);
+    judge(f, "brownian_stress.csv", &w);
+}
+
+/* --- over the run --- */
+
+/* Mean of a product over the particles of a species and the origins of a lag: all of them to 16 samples, every 2^level-th beyond. */
+typedef void product_of(const struct film *f, const struct track_point *old, const struct track_point *now, double duration, double out[6]);
+
+static double correlate(const struct film *f, size_t lag, int species, product_of *product, double mean[6])
+{
+    size_t stride = 1;
+    double samples = 0.0, one[6];
+    while (lag > 16 * stride)
+        stride *= 2;
+    memset(mean, 0, 6 * sizeof *mean);
+    for (size_t s = 0; s + lag < f->frames; s += stride)
+        for (size_t i = 0; i < f->count; i++) {
+            if (f->row[i].species != species)
+                continue;
+            product(f, track_at(&f->track, s, i), track_at(&f->track, s + lag, i), (double)lag * f->every * f->dt, one);
+            samples += 1.0;
+            for (int k = 0; k < 6; k++)
+                mean[k] += one[k];
+        }
+    for (int k = 0; k < 6 && samples > 0; k++)
+        mean[k] /= samples;
+    return samples;
+}
+
+static void displaced(const struct film *f, const struct track_point *old, const struct track_point *now, double duration, double out[6])
+{
+    for (int k = 0; k < 3; k++) {
+        double carried = old->x[k];
+        for (int l = 0; l < 3; l++)
+            carried += f->m.gradient[k][l] * duration * old->x[l];
+        const double vorticity = f->m.gradient[(k + 2) % 3][(k + 1) % 3] - f->m.gradient[(k + 1) % 3][(k + 2) % 3];
+        out[k] = gsl_pow_2(now->x[k] - carried);
+        out[3 + k] = gsl_pow_2(now->turn[k] - old->turn[k] - 0.5 * vorticity * duration);
+    }
+}
+
+static void remembered(const struct film *f, const struct track_point *old, const struct track_point *now, double duration, double out[6])
+{
+    double c[2][3], w[2][3];
+    (void)duration;
+    peculiar(f, old, c[0], w[0]);
+    peculiar(f, now, c[1], w[1]);
+    for (int k = 0; k < 3; k++) {
+        out[k] = c[0][k] * c[1][k];
+        out[3 + k] = w[0][k] * w[1][k];
+    }
+}
+
+static void judge_lags(const struct film *f, const char *file, const char *columns, product_of *product)
+{
+    struct table t;
+    struct worst w = WORST_NONE, samples = WORST_NONE;
+    if (!open_table(f, file, columns, &t))
+        return;
+    for (size_t r = 0; r < t.rows; r++) {
+        double mean[6], scale[2] = { 0 };
+        const double number = correlate(f, (size_t)lround(table_at(&t, r, 0) / (f->every * f->dt)), (int)table_at(&t, r, 1), product, mean);
+        for (int k = 0; k < 6; k++)
+            scale[k / 3] = fmax(scale[k / 3], fabs(mean[k]));
+        worst_see(&samples, table_at(&t, r, 2), number, 1.0, r);
+        for (size_t k = 0; k < 6; k++)
+            worst_see(&w, table_at(&t, r, 3 + k), mean[k], scale[k / 3], r);
+    }
+    table_free(&t);
+    char what[64];
+    judge(f, file, &w);
+    snprintf(what, sizeof what, "%s: samples", file);
+    judge(f, what, &samples);
+}
+
+static void judge_distribution(const struct film *f)
+{
+    struct table t;
+    struct worst counts = WORST_NONE, g = WORST_NONE;
+    double of[2] = { 0 };
+    if (!open_table(f, "pair_distribution.csv", "kind$,species_a,species_b,low,high,count,g", &t))
+        return;
+    for (size_t i = 0; i < f->count; i++)
+        of[f->row[i].species - 1] += 1.0;
+    for (size_t r = 0; r < t.rows; r++) {
+        const int a = (int)table_at(&t, r, 1), b = (int)table_at(&t, r, 2);
+        const bool near = strcmp(table_word(&t, r, 0), "near") == 0;
+        const double low = table_at(&t, r, 3), high = table_at(&t, r, 4), touch = near ? f->m.radius[a - 1] + f->m.radius[b - 1] : 0.0;
+        double found = 0.0;
+        for (size_t s = 0; s < f->frames; s++)
+            for (size_t k = 0; k < f->nears[s]; k++) {
+                const struct near_pair *p = &f->near[s][k];
+                const int one = f->row[p->i].species, two = f->row[p->j].species;
+                const double at = near ? p->gap : p->distance;
+                found += ((one == a && two == b) || (one == b && two == a)) && at >= low && at < high;
+            }
+        const double pairs = a == b ? 0.5 * of[a - 1] * (of[a - 1] - 1.0) : of[a - 1] * of[b - 1];
+        const double ideal = pairs / f->m.volume * 4.0 / 3.0 * M_PI * (gsl_pow_3(touch + high) - gsl_pow_3(touch + low)) * (double)f->frames;
+        worst_see(&counts, table_at(&t, r, 5), found, 1.0, r);
+        worst_see(&g, table_at(&t, r, 6), found / ideal, fmax(found / ideal, 1.0), r);
+    }
+    table_free(&t);
+    judge(f, "pair_distribution.csv: counts", &counts);
+    check_error(f->run, INVARIANT, "pair_distribution.csv: g", g.measured, g.expected, g.error, 1e-8, "row %zu: g is %s; the pairs found over those of an "
+                "ideal gas in that shell give that", g.at + 1, compare(&g));      /* written with nine digits */
+}
+
+/* --- the run --- */
+
+static bool record(struct film *f, const char *name, bool with_tables, struct track *track)
+{
+    json_t *scene = json_deep_copy(f->scene);
+    int at[128];
+    for (size_t k = 0; k < f->frames; k++)
+        at[k] = (int)k * f->every;
+    if (with_tables) {
+        json_t *tables = json_deep_copy(json_object_get(f->run->gate_case->parameters, "tables")), *one;
+        const char *key;
+        json_object_foreach(tables, key, one)
+        {
+            json_object_set_new(one, "every", json_integer(f->every));
+            json_t *output = scene_get(scene, "output");
+            json_object_set(output, key, one);
+        }
+        json_decref(tables);
+    }
+    const bool good = track_ask(f->run, name, scene, f->row, f->count, at, f->frames, track);
+    char folder[PATH_LENGTH];
+    path_join(folder, f->run->work, name);
+    if (with_tables)
+        path_join(f->out, folder, "out");
+    json_decref(scene);
+    return good;
+}
+
+static void judge_unwatched(struct film *f)
+{
+    struct track plain;
+    struct worst w = WORST_NONE;
+    if (!record(f, "unwatched", false, &plain))
+        return;
+    for (size_t s = 0; s < f->frames; s++)
+        for (size_t i = 0; i < f->count; i++)
+            worst_see_vector(&w, track_at(&f->track, s, i)->x, track_at(&plain, s, i)->x, 9, 1.0, i);      /* x, u, w lie one after the other */
+    track_free(&plain);
+    check_error(f->run, INVARIANT, "the path without tables", w.measured, w.expected, w.error, 0.0, "sphere %zu moves otherwise when the tables are written: "
+                "%.17g instead of %.17g", w.at + 1, w.measured, w.expected);
+}
+
+void check_observers(struct check_run *run)
+{
+    const json_t *parameters = run->gate_case->parameters;
+    struct film f = { .run = run, .scene = json_deep_copy(run->gate_case->scene), .frames = (size_t)scene_number(parameters, "frames", 0),
+                      .every = (int)scene_number(parameters, "every", 1), .range = scene_number(parameters, "range", NAN) };
+    double counts[2];
+    size_t two;
+    char why[WHY_LENGTH] = "the gate is out of memory";
+    parameter_list(parameters, "spheres", counts, &two, 2);
+    if (!model_read(run, f.scene, &f.m) || f.frames > 128)
+        return;
+    const struct packing_species kind[2] = { { f.m.radius[0], (int)counts[0] }, { f.m.radius[1], (int)counts[1] } };
+    const double edge = packing_edge(kind, 2, scene_number(parameters, "phi", NAN));
+    f.count = (size_t)(kind[0].count + kind[1].count);
+    f.dt = scene_number(f.scene, "dynamics.verlet.dt", NAN);
+    f.kT = scene_number(f.scene, "fluid.kT", NAN);
+    f.row = calloc(f.count, sizeof *f.row);
+    f.near = calloc(f.frames, sizeof *f.near);
+    f.nears = calloc(f.frames, sizeof *f.nears);
+    scene_set(f.scene, "box.lengths", json_pack("[fff]", edge, edge, edge));
+    scene_set(f.scene, "seed", json_integer(run->seed));
+    scene_set(f.scene, "output.stress", json_pack("{si}", "every", f.every));
+    bool good = f.row && f.near && f.nears && model_read(run, f.scene, &f.m) && packing_make(kind, 2, edge, f.m.gradient[0][1], run->seed, f.row, why);
+    if (!good)
+        check_garbage(run, why);
+    good = good && record(&f, "watched", true, &f.track);
+    for (size_t s = 0; good && s < f.frames; s++)
+        good = find_pairs(&f, s);
+    if (good) {
+        judge_temperature(&f);
+        judge_contacts(&f);
+        judge_viscosity(&f);
+        judge_brownian(&f);
+        judge_lags(&f, "displacement.csv", "lag,species,samples,msd_x,msd_y,msd_z,turn_x,turn_y,turn_z", displaced);
+        judge_lags(&f, "velocity_correlation.csv", "lag,species,samples,c_x,c_y,c_z,w_x,w_y,w_z", remembered);
+        judge_distribution(&f);
+        judge_unwatched(&f);
+        track_free(&f.track);
+    }
+    for (size_t s = 0; f.near && s < f.frames; s++)
+        free(f.near[s]);
+    free(f.near);
+    free(f.nears);
+    free(f.row);
+    json_decref(f.scene);
+}
