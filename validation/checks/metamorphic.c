@@ -10,6 +10,8 @@
  * numbers on the particles, another description of the same lattice (start.time later by whole strains, a cell with B + A for B,
  * with which the cell is remapped at other moments), more outputs: nothing may change.
  *
+ * Where forces from outside, or noise, know axes or labels, only the changes that they do not notice are made (parameters.only).
+ *
  * These stand in the dense layer, not with two bodies, because they need a crowd: neighbour lists that are rebuilt, several
  * contacts per sphere, pairs across every face. The start is already sheared to a strain of 0.4 by the candidate itself, so that the
  * remap of the cell falls into the runs.
@@ -57,29 +59,10 @@ static void image(const struct change *c, const double x[3], const double u[3], 
     }
 }
 
-static void multiply(json_t *scene, const char *path, double factor)
-{
-    if (scene_get(scene, path))
-        scene_set(scene, path, json_real(factor * scene_number(scene, path, NAN)));
-}
-
 /* The scene in other units and axes; the cell is a cube at time 0, which Q takes to itself. */
 static json_t *changed_scene(const struct crowd *crowd, const struct change *c, const struct model *m, double G[3][3])
 {
-    json_t *scene = json_deep_copy(crowd->scene), *shear = json_array(), *species;
-    size_t s;
-    const double stiffness = c->mass / (c->time * c->time), edge = c->length * crowd->edge;
-    multiply(scene, "fluid.viscosity", c->mass / (c->length * c->time));
-    multiply(scene, "forces.contact.normal_stiffness", stiffness);
-    multiply(scene, "forces.contact.tangential_stiffness", stiffness);
-    multiply(scene, "dynamics.verlet.dt", c->time);
-    multiply(scene, "start.time", c->time);
-    scene_set(scene, "box.lengths", json_pack("[fff]", edge, edge, edge));
-    json_array_foreach(json_object_get(scene, "species"), s, species)
-    {
-        multiply(species, "radius", c->length);
-        multiply(species, "density", c->mass / gsl_pow_3(c->length));
-    }
+    json_t *scene = scene_in_units(crowd->scene, &(struct units){ c->length, c->mass, c->time }), *shear = json_array();
     for (int f = 0; f < 3; f++)
         for (int g = 0; g < 3; g++) {
             G[f][g] = 0.0;
@@ -263,6 +246,13 @@ static bool prepare(struct check_run *run, struct crowd *crowd)
     return true;
 }
 
+/* Changes that this scene allows: parameters.only, or all. Forces from outside know the axes and the origin; noise knows the labels. */
+static bool wanted(struct check_run *run, const char *change)
+{
+    const json_t *only = json_object_get(run->gate_case->parameters, "only");
+    return !only || case_lists(only, change);
+}
+
 static bool try_all(struct check_run *run, const struct crowd *crowd, const struct model *m, const struct track *base)
 {
     const double L = crowd->edge, start = scene_number(crowd->scene, "start.time", 0.0), tolerance = run->gate_case->tolerance;
@@ -278,13 +268,21 @@ static bool try_all(struct check_run *run, const struct crowd *crowd, const stru
     json_object_del(scene_get(tilted, "box"), "lengths");
     scene_set(tilted, "box.cell", json_pack("[[fff][fff][fff]]", L, 0.0, 0.0, L, L, 0.0, -L, 0.0, L));
     scene_set(watched, "output.stress.every", json_integer(3));
-    return try_change(run, "units", "units", crowd, m, &units, base) & try_change(run, "labels", "order of the particles", crowd, m, &labels, base)
-           & try_change(run, "mirror", "mirrored shear", crowd, m, &mirror, base)
-           & try_change(run, "axes", "permuted axes", crowd, m, &cyclic, base)
-           & try_change(run, "origin", "moved origin", crowd, m, &origin, base)
-           & try_scene(run, "later", "start two strains later", crowd, later, base, tolerance)
-           & try_scene(run, "tilted", "another cell of the same lattice", crowd, tilted, base, tolerance)
-           & try_scene(run, "watched", "more outputs", crowd, watched, base, 1e-15) & try_split(run, crowd);
+    bool good = true;
+    const struct { const char *name, *what; const struct change *change; json_t *scene; double tolerance; } tries[] = {
+        { "units", "units", &units, NULL, tolerance },                    { "labels", "order of the particles", &labels, NULL, tolerance },
+        { "mirror", "mirrored shear", &mirror, NULL, tolerance },         { "axes", "permuted axes", &cyclic, NULL, tolerance },
+        { "origin", "moved origin", &origin, NULL, tolerance },           { "later", "start two strains later", NULL, later, tolerance },
+        { "tilted", "another cell of the same lattice", NULL, tilted, tolerance }, { "watched", "more outputs", NULL, watched, 1e-15 } };
+    for (size_t k = 0; k < sizeof tries / sizeof *tries; k++) {
+        if (!wanted(run, tries[k].name))
+            json_decref(tries[k].scene);
+        else if (tries[k].change)
+            good &= try_change(run, tries[k].name, tries[k].what, crowd, m, tries[k].change, base);
+        else
+            good &= try_scene(run, tries[k].name, tries[k].what, crowd, tries[k].scene, base, tries[k].tolerance);
+    }
+    return good && (!wanted(run, "split") || try_split(run, crowd));
 }
 
 /* Without drag no frame is special: the whole crowd drifts along all three axes, through all faces. */
@@ -314,7 +312,7 @@ void check_metamorphic(struct check_run *run)
     if (prepare(run, &crowd) && model_read(run, crowd.scene, &m)) {
         json_t *scene = json_deep_copy(crowd.scene);
         if (follow(run, "base", scene, crowd.row, &crowd, &base)) {
-            if (try_all(run, &crowd, &m, &base))
+            if (try_all(run, &crowd, &m, &base) && wanted(run, "frame"))
                 try_frame(run, &crowd, &m);
             track_free(&base);
         }

@@ -50,6 +50,11 @@ struct theory_contact contact_between(const struct model *m, double a1, double a
 json_t *variant_scene(const struct gate_case *c, const json_t *variant);
 int model_species(const struct model *m, double radius);            /* number from 1 of the species with this radius */
 
+/* The scene in units of length, mass and time so many times as small; and what a number of this dimension is multiplied with. */
+struct units { double length, mass, time; };
+double unit_of(const struct units *u, int length, int mass, int time);
+json_t *scene_in_units(const json_t *scene, const struct units *u);
+
 /* --- states --- */
 
 struct pair_state {

@@ -8,49 +8,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* A path of the scene and the powers of length, mass and time in its unit. */
-struct dimension { const char *path; int length, mass, time; };
-static const struct dimension scalars[] = {
-    { "fluid.viscosity", -1, 1, -1 },
-    { "forces.contact.normal_stiffness", 0, 1, -2 },
-    { "forces.contact.tangential_stiffness", 0, 1, -2 },
-    { "start.time", 0, 0, 1 },
-};
-
-struct units { double length, mass, time; };
-
-static double factor(const struct units *u, int length, int mass, int time)
-{
-    return pow(u->length, length) * pow(u->mass, mass) * pow(u->time, time);
-}
-
-static void scale_number(json_t *object, const char *key, double by)
-{
-    if (json_is_number(json_object_get(object, key)))
-        json_object_set_new(object, key, json_real(by * json_number_value(json_object_get(object, key))));
-}
-
-static json_t *other_units(const json_t *scene, const struct units *u)
-{
-    json_t *other = json_deep_copy(scene), *item, *lengths = scene_get(other, "box.lengths");
-    size_t k;
-    for (k = 0; k < sizeof scalars / sizeof *scalars; k++) {
-        const struct dimension *d = &scalars[k];
-        if (scene_get(other, d->path))
-            scene_set(other, d->path, json_real(factor(u, d->length, d->mass, d->time) * scene_number(scene, d->path, 0)));
-    }
-    for (k = 0; k < json_array_size(lengths); k++)
-        json_array_set_new(lengths, k, json_real(u->length * json_number_value(json_array_get(lengths, k))));
-    json_array_foreach(scene_get(other, "shear"), k, item)
-        scale_number(item, "rate", factor(u, 0, 0, -1));
-    json_array_foreach(scene_get(other, "species"), k, item)
-    {
-        scale_number(item, "radius", u->length);
-        scale_number(item, "density", factor(u, -3, 1, 0));
-    }
-    return other;
-}
-
 static void fill(struct check_run *run, struct model *m, struct pair_book *book)
 {
     double xi[16], flow[3];
@@ -81,8 +38,8 @@ static struct pair_book translated(const struct pair_book *book, const struct un
             p.s[side].radius *= u->length;
             for (int d = 0; d < 3; d++) {
                 p.s[side].x[d] *= u->length;
-                p.s[side].u[d] *= factor(u, 1, 0, -1);
-                p.s[side].w[d] *= factor(u, 0, 0, -1);
+                p.s[side].u[d] *= unit_of(u, 1, 0, -1);
+                p.s[side].w[d] *= unit_of(u, 0, 0, -1);
             }
         }
         for (int d = 0; d < 3; d++)
@@ -101,8 +58,8 @@ static void see(const struct pair_book *book, const struct pair_answer *here, co
             for (int id = 1; id <= 2; id++) {
                 const double *one = forces_at(&here->forces, k, force, id), *two = forces_at(&there->forces, k, force, id);
                 for (int d = 0; d < 3 && pass == 1; d++) {
-                    worst_see(f, two[d] / factor(u, 1, 1, -2), one[d], scale_f, k);
-                    worst_see(t, two[3 + d] / factor(u, 2, 1, -2), one[3 + d], scale_t, k);
+                    worst_see(f, two[d] / unit_of(u, 1, 1, -2), one[d], scale_f, k);
+                    worst_see(t, two[3 + d] / unit_of(u, 2, 1, -2), one[3 + d], scale_t, k);
                 }
                 scale_f = fmax(scale_f, norm(one));
                 scale_t = fmax(scale_t, norm(one + 3));
@@ -127,7 +84,7 @@ void pair_units(struct check_run *run)
     struct pair_book book = { 0 };
     fill(run, &m, &book);
     struct pair_book other = translated(&book, &u);
-    json_t *scene = other_units(run->gate_case->scene, &u);
+    json_t *scene = scene_in_units(run->gate_case->scene, &u);
     struct pair_answer here = { 0 }, there = { 0 };
     if (book_ask(run, "own-units", run->gate_case->scene, &book, force, &here)
         && book_ask(run, "other-units", scene, &other, force, &there)) {
