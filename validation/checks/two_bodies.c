@@ -130,11 +130,12 @@ static bool ask(struct check_run *run, const char *name, json_t *scene, const st
     bool good = start != NULL;
     for (int r = 0; good && r < REFINEMENTS; r++) {
         int fine[64];
-        char run_name[96];
+        char run_name[96], step[96];
+        snprintf(step, sizeof step, "dynamics.%s.dt", json_object_iter_key(json_object_iter(scene_get(scene, "dynamics"))));
         for (size_t t = 0; t < times; t++)
             fine[t] = at[t] << r;
         snprintf(run_name, sizeof run_name, "%s-dt-%d", name, 1 << r);
-        scene_set(scene, "dynamics.verlet.dt", json_real(ldexp(dt, -r)));
+        scene_set(scene, step, json_real(ldexp(dt, -r)));
         good = track_ask(run, run_name, scene, start, 2 * b->pairs, fine, times, &c->track[r]);
     }
     free(start);
