@@ -71,7 +71,9 @@ static bool ask_encounter(struct check_run *run, const char *name, const struct 
     json_t *scene = json_deep_copy(given);
     scene_set(scene, "box.lengths", json_pack("[fff]", edges[0], edges[1], edges[2]));
     scene_set(scene, "start.file", json_string("states.csv"));
-    scene_set(scene, "run.steps", json_integer((json_int_t)(duration / scene_number(given, "dynamics.verlet.dt", NAN))));
+    char step[96];
+    step_key(given, step);
+    scene_set(scene, "run.steps", json_integer((json_int_t)(duration / scene_number(given, step, NAN))));
     scene_set(scene, "output.stress.every", json_integer((json_int_t)scene_number(run->gate_case->parameters, "every", 1)));
     const struct question q = { .protocol = "run", .scene = scene, .state = row, .states = 2 };
     char out[PATH_LENGTH];

@@ -21,6 +21,8 @@ bool bodies_make(struct bodies *b, size_t pairs);
 void bodies_free(struct bodies *b);
 /* Rows of states.csv, two to a pair. Caller frees. */
 struct state_row *bodies_rows(const struct bodies *b, const struct model *m);
+/* Where a scene says its time step: "dynamics.verlet.dt" and the like. */
+void step_key(const json_t *scene, char path[96]);
 /* The forces that the scene declares; the laws live in the model, which must outlive it. */
 struct theory_motion bodies_motion(const struct model *m, double radius_1, double radius_2);
 
@@ -42,7 +44,7 @@ struct comparison {
 bool bodies_compare(struct check_run *run, const char *name, json_t *scene, const struct bodies *b, double dt, const int *at, size_t times,
                     double speed, int orders, struct comparison *c);
 void comparison_free(struct comparison *c);
-/* Results: errors at dt within `coarse`, halving with it, and the extrapolated values within the tolerance of the case. */
+/* Results: errors at dt within `coarse` (of the gap, parameters.coarse_gap where it is said), halving with it, and the extrapolated values within the tolerance of the case. */
 void bodies_judge(struct check_run *run, const char *label, const struct comparison *c, const struct bodies *b, double coarse);
 void bodies_picture(struct check_run *run, const struct comparison *c, const struct bodies *b, const char *title);
 
