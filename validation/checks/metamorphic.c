@@ -8,7 +8,7 @@
  *
  * with units of length l, mass m and time t, a mirror or permutation of the axes Q, another origin s, another frame V (without drag). Other
  * numbers on the particles, another description of the same lattice (start.time later by whole strains, a cell with B + A for B,
- * with which the cell is remapped at other moments), more outputs: nothing may change.
+ * with which the cell is remapped at other moments), two cells side by side as one, more outputs: nothing may change.
  *
  * Where forces from outside, or noise, know axes or labels, only the changes that they do not notice are made (parameters.only).
  *
@@ -165,6 +165,31 @@ static bool try_scene(struct check_run *run, const char *name, const char *what,
     return answered;
 }
 
+/* Two cells side by side as one cell twice as long along the flow: every sphere has a double, which does what it does. */
+static bool try_doubled(struct check_run *run, const struct crowd *crowd, const struct track *base)
+{
+    struct crowd two = *crowd;
+    double G[3][3] = { { 0 } };
+    struct track track;
+    two.count = 2 * crowd->count;
+    two.row = calloc(two.count, sizeof *two.row);
+    two.scene = json_deep_copy(crowd->scene);
+    scene_set(two.scene, "box.lengths", json_pack("[fff]", 2.0 * crowd->edge, crowd->edge, crowd->edge));
+    for (size_t i = 0; two.row && i < two.count; i++) {
+        two.row[i] = crowd->row[i % crowd->count];
+        two.row[i].id = (int)i + 1;
+        two.row[i].x[0] += i < crowd->count ? 0.0 : crowd->edge;
+    }
+    const bool answered = two.row && follow(run, "doubled", two.scene, two.row, &two, &track);
+    if (answered) {
+        judge(run, "two cells as one", crowd, &nothing, G, base, &track, run->gate_case->tolerance);
+        track_free(&track);
+    }
+    free(two.row);
+    json_decref(two.scene);
+    return answered;
+}
+
 /* Second half from what was written at the middle: without friction nothing is remembered but the half-step velocity. */
 static bool try_split(struct check_run *run, const struct crowd *crowd)
 {
@@ -282,6 +307,7 @@ static bool try_all(struct check_run *run, const struct crowd *crowd, const stru
         else
             good &= try_scene(run, tries[k].name, tries[k].what, crowd, tries[k].scene, base, tries[k].tolerance);
     }
+    good = good && (!wanted(run, "doubled") || try_doubled(run, crowd, base));
     return good && (!wanted(run, "split") || try_split(run, crowd));
 }
 
