@@ -3,8 +3,7 @@
  *
  *     U_inf(x) = G x                background flow, G = dU/dx a superposition of simple shears
  *     H(t) = F(t) H(0) M            cell: columns A, B, C
- *     F(t) = I + G t + G G t^2 / 2  what the flow makes of a material line; exact, for such a G is nilpotent (G^3 = 0);
- *                               of a flow that changes with time: core/flow.h
+ *     F(t) = I + G t + G G t^2 / 2  what the flow makes of a material line; exact, for such a G is nilpotent (G^3 = 0); G(t): core/flow.h
  *
  * M is an integer matrix of determinant one that picks the least tilted cell of the same lattice (remap): it labels
  * images anew and changes nothing else. F is computed from time 0, never accumulated.
@@ -22,8 +21,7 @@
 
 struct box {
     mat3 start;                     /* H(0)              [L] */
-    mat3 gradient;                  /* G                 [1/T] */
-    mat3 image_gradient;            /* G that the velocities of the moment belong to: of the middle of the step between its two kicks */
+    mat3 gradient, image_gradient;  /* G, and G that velocities between two kicks belong to: of the middle of the step [1/T] */
     struct flow *flow;              /* G(t); NULL: steady */
     bool periodic[3];
     bool flowing;                   /* G is not zero */

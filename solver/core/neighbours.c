@@ -259,8 +259,7 @@ bool neighbours_find(struct neighbours *n, struct box *box, struct particles *p,
             const double overlap = -gap / fmin(radius_of(p, c->i), radius_of(p, c->j));
             if (overlap > near->deepest) {
                 near->deepest = overlap;
-                near->deepest_tag[0] = p->tag[c->i];
-                near->deepest_tag[1] = p->tag[c->j];
+                near->deepest_tag[0] = p->tag[c->i], near->deepest_tag[1] = p->tag[c->j];
             }
             if (!(distance > 1e-12 * c->touch))
                 return error_raise(e, ERROR_RUN, "particles %d and %d have the same centre at time %.9g: their normal is undefined",

@@ -28,8 +28,8 @@ void suspension_take(struct suspension *s, struct force *f)
 
 bool suspension_find(struct suspension *s, bool *relisted, struct error *e)
 {
-    if (s->box.flow && s->step > 0)
-        s->box.image_gradient = s->box.flow->gradient(s->box.flow, s->start_time + ((double)s->step - 0.5) * s->dt);
+    const double middle = s->start_time + ((double)s->step - 0.5) * s->dt;
+    s->box.image_gradient = s->box.flow && s->step > 0 ? s->box.flow->gradient(s->box.flow, middle) : s->box.gradient;
     return neighbours_find(&s->neighbours, &s->box, &s->particles, relisted, e);
 }
 
