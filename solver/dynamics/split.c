@@ -3,7 +3,7 @@
  *
  *     kick      dt/2   contact, repulsion and other forces of position          U, W
  *     drift     dt/2                                                            x
- *     friction  dt     drag, lubrication and all noise at fixed x, midpoint     U, W     (core/friction.h)
+ *     friction  dt     drag, lubrication and all noise at fixed x, midpoint     U, W     (core/friction.h, or core/sweeps.h)
  *     drift     dt/2                                                            x
  *     kick      dt/2   with the forces at the new x
  *
@@ -18,6 +18,7 @@
  */
 #include "core/friction.h"
 #include "core/motion.h"
+#include "core/sweeps.h"
 #include "dynamics/dynamics.h"
 
 #include <stdlib.h>
@@ -61,6 +62,8 @@ static bool friction_step(struct suspension *s, struct friction *f, struct error
 {
     const struct moment now = moment_of(s, 0.0);
     const bool measuring = s->measuring;
+    if (s->friction_sweeps)
+        return sweeps_step(f, s, e);
     if (!friction_gather(f, s, s->dt, e))
         return false;
     s->measuring = false;
