@@ -3,6 +3,7 @@
  *
  *     w^2 dt^2 + 2 g dt < 4,    w^2 = largest eigenvalue of M^-1 K,   g = largest eigenvalue of M^-1 R
  *
+ * (4 g dt for predicted_verlet: a mode that alternates in sign is predicted with twice its deviation.)
  * A pair's matrix is positive semidefinite, hence at most twice its diagonal blocks; so both eigenvalues are at most
  * twice the largest eigenvalue of any particle's own 6 x 6 block (plus its one-body rate). The bound is never low. No pair
  * of the scene, pressed together alone, may be unstable either.

@@ -71,4 +71,4 @@ static bool predicted_step(const struct dynamics *self, struct suspension *s, bo
     return true;
 }
 
-const struct dynamics predicted_verlet = { "predicted_verlet", predicted_step, predicted_begin, predicted_free, true };
+const struct dynamics predicted_verlet = { "predicted_verlet", predicted_step, predicted_begin, predicted_free, NULL, true };
