@@ -130,24 +130,24 @@ static void maxwell_is_kept(void)
 }
 
 /* A row of three: its two pair impulses are the momentum that the outer spheres gain, and the stress is made of those. */
-static void stress_is_that_of_the_impulses(void)
+static void books_impulses(const char *form)
 {
     struct error e = { 0 };
-    struct simulation *sim = scene_from("{\"about\":\"test\",\"seed\":5,\"fluid\":{\"viscosity\":0.7,\"kT\":0.3},\"box\":{\"lengths\":[19,8.3,8.7],"
+    char text[1000];
+    snprintf(text, sizeof text, "{\"about\":\"test\",\"seed\":5,\"fluid\":{\"viscosity\":0.7,\"kT\":0.3},\"box\":{\"lengths\":[19,8.3,8.7],"
         "\"periodic\":[true,true,true]},\"shear\":[{\"flow\":\"x\",\"gradient\":\"y\",\"rate\":-0.4}],\"species\":[{\"name\":\"a\",\"radius\":1.3,\"density\":2.0}],"
         "\"start\":{\"file\":\"states.csv\"},\"forces\":{\"lubrication_noise\":{\"distribution\":\"gaussian\"},\"lubrication\":{\"inner_gap\":1e-3,"
-        "\"outer_gap\":0.5,\"rotation_correction\":\"none\"}},\"dynamics\":{\"split\":{\"dt\":0.02,\"friction\":\"sweeps\"}},\"run\":{\"steps\":1}}",
+        "\"outer_gap\":0.5,\"rotation_correction\":\"none\"}},\"dynamics\":{\"split\":{\"dt\":0.02,\"friction\":\"%s\"}},\"run\":{\"steps\":1}}", form);
+    struct simulation *sim = scene_from(text,
         "1,1,4,4,4,0.3,0,0,0,0.2,0\n2,1,6.601,4.1,4.3,-0.2,0.1,0,0,0,0.3\n3,1,9.22,4.1,4.4,0,1,0.3,0.1,0,0\n", &e);
     check_true(!error_raised(&e) && simulation_begin(sim, &e), e.text);
     struct suspension *s = &sim->suspension;
     struct particles *p = &s->particles;
-    struct friction f;
-    memset(&f, 0, sizeof f);
     const vec3 first = p->velocity[0], last = p->velocity[2];
     s->measuring = true;
     stress_clear(&s->stress);
     s->step++;
-    check_true(sweeps_step(&f, s, &e) && f.links == 2, e.text);
+    check_true(sim->dynamics->friction(sim->dynamics, s, &e), e.text);
     mat3 booked = { { { 0 } } }, expected = { { { 0 } } };
     for (int o = 0; o < s->stress.origins; o++)
         for (int k = 0; k < 9; k++)
@@ -156,8 +156,13 @@ static void stress_is_that_of_the_impulses(void)
     mat3_add_outer(&expected, -mass_of(p, 2) / s->dt, minus(p->velocity[2], last), minus(p->position[2], p->position[1]));
     for (int k = 0; k < 9; k++)
         check_close(booked.m[k / 3][k % 3], expected.m[k / 3][k % 3], 1e-9 * fabs(expected.m[0][0]), "stress times volume");
-    friction_free(&f);
     drop(sim);
+}
+
+static void stress_is_that_of_the_impulses(void)
+{
+    books_impulses("sweeps");
+    books_impulses("global");
 }
 
 static void settings_are_refused_where_they_mean_nothing(void)

@@ -244,10 +244,12 @@ double step_advised(const struct suspension *s)
 double step_bias(const struct suspension *s, double dt)
 {
     const struct particles *p = &s->particles;
+    struct suspension any = *s;
+    any.implicit_friction = false;                          /* friction counts, whoever takes care of it */
     double eps = 0.0;
     for (int a = 0; a < p->species_count; a++)
         for (int b = 0; b < p->species_count && p->count > 1; b++)
-            eps = fmax(eps, response_of(s, NULL, a, b, -1e-300).resistance.X_A * dt * (1.0 / p->kind[a].mass + 1.0 / p->kind[b].mass));
+            eps = fmax(eps, response_of(&any, NULL, a, b, -1e-300).resistance.X_A * dt * (1.0 / p->kind[a].mass + 1.0 / p->kind[b].mass));
     return eps;
 }
 

@@ -27,7 +27,7 @@ struct step_limit step_limit_of(const struct suspension *s, struct error *e);
 /* The step of "dt": "auto": a stable and accurate one also when particles press together. Docs: docs/time-step.md */
 double step_advised(const struct suspension *s);
 
-/* Bias of an explicit scheme with noise: eps = X_A dt/m_eff of the stiffest pair at the inner gap; 0 without pair friction. */
+/* What biases of schemes grow with: eps = X_A dt/m_eff of the stiffest pair at the inner gap; 0 without pair friction. */
 double step_bias(const struct suspension *s, double dt);
 
 #endif
