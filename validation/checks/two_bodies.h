@@ -42,6 +42,7 @@ void check_encounter(struct check_run *run);
 void check_approach(struct check_run *run);
 void check_equipartition(struct check_run *run);
 void check_boltzmann(struct check_run *run);
+void check_trapped_pair(struct check_run *run);
 void check_metamorphic(struct check_run *run);
 
 #endif
