@@ -83,13 +83,14 @@ awk -F, '/^#/ || /^scheme/ { next }
     { off = $9 > 1 ? $9 - 1 : 1 - $9
       printf "%-18s %9s %6s %9.4f +- %.4f %11.4f %11.1f %s\n", $1, $2, $3, $7, $8, $9, $10, off <= 0.01 ? "" : "  bias divided out" }' "$table"
 {
-    echo "set terminal pngcairo size 800,520 font 'sans,11'; set output '$work/work-precision.png'; set logscale xy; set key outside right"
+    echo "set terminal pngcairo size 1000,520 font 'sans,11'; set output '$work/work-precision.png'; set logscale xy; set key outside right"
     echo "set xlabel 'seconds of one core'; set ylabel 'relative error of the number of pairs near contact'; set samples 400"
     printf "plot [0.1:1e4] [1e-3:0.3] 0.01 with lines lc rgb 'black' dt 3 title '1 %%'"
-    awk -F, '/^#/ || /^scheme/ { next }
-        { off = $9 > 1 ? $9 - 1 : 1 - $9; name = $1 " " $2; gsub("_", " ", name); s = $8 / $9 * sqrt($6)
-          printf ", sqrt(%g**2 + %g**2/x) with lines lw 2 title \"%s\"", off, s, name
-          if (off > 0.01) printf ", %g/sqrt(x) with lines lw 2 dt 2 title \"%s, divided\"", s, name }' "$table"
+    awk -F, 'BEGIN { split("#1b6ca8 #62b0e8 #6a3d9a #000000 #b2182b #ef8a62 #1b7837 #7fbf7b", colour, " ") }
+        /^#/ || /^scheme/ { next }
+        { off = $9 > 1 ? $9 - 1 : 1 - $9; name = $1 " " $2; gsub("_", " ", name); s = $8 / $9 * sqrt($6); c = colour[++n]
+          printf ", sqrt(%g**2 + %g**2/x) with lines lw 2 lc rgb \"%s\" title \"%s\"", off, s, c, name
+          if (off > 0.01) printf ", %g/sqrt(x) with lines lw 2 dt 2 lc rgb \"%s\" title \"%s, divided\"", s, c, name }' "$table"
 } >"$work/plot.gnuplot"
 gnuplot "$work/plot.gnuplot"
 best=$(awk -F, '$1 == "split" || $1 == "sweeps" { if (!b || $10 < b) b = $10 } END { print b }' "$table")
