@@ -60,7 +60,7 @@ void describe_bias(const struct simulation *sim)
     const double eps = step_bias(s, s->dt);
     const double density = s->predicted_friction ? cbrt(fmax(0.0, 1.0 - eps) * (1.0 + 0.5 * eps) * (1.0 + 0.5 * eps)) : 1.0 - 0.5 * eps;
     const double order = 0.0015 * eps * eps;
-    if (s->kT > 0.0 && sim->dynamics->explicit_friction && density < 0.995)
+    if (s->kT > 0.0 && !sim->dynamics->friction && density < 0.995)
         fprintf(stderr, "shear: note: with noise, %s makes pairs in contact rarer by the factor %s = %.3f (eps = X_A dt/m_eff = %.3g); "
                         "a smaller dt lessens it %s\n", sim->dynamics->name, s->predicted_friction ? "1 - eps^2/4 ..." : "1 - eps/2", density, eps,
                 s->predicted_friction ? "as dt^2" : "in proportion");

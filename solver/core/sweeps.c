@@ -3,11 +3,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Adds friction and noise of the pair forces on the pairs of `near`, or of the others on each particle alone. */
+/* Does it act on pairs: has a range, or reads what such a force left with them? Else on each particle alone. */
+static bool is_of_pairs(const struct force *f) { return f->range_factor > 0.0 || f->keeps_resistance; }
+
+/* Adds friction and noise of the pair forces on the pairs of `near`, or of the others. */
 static void act(const struct suspension *s, bool on_pairs, struct near_pairs *near, const struct moment *now, struct stress *stress)
 {
     for (int k = 0; k < s->force_count; k++)
-        if (s->force[k]->kind & (FRICTION | NOISE) && (s->force[k]->range_factor > 0.0) == on_pairs)
+        if (s->force[k]->kind & (FRICTION | NOISE) && is_of_pairs(s->force[k]) == on_pairs)
             s->force[k]->add(s->force[k], (struct particles *)&s->particles, near, now, stress);
 }
 

@@ -28,7 +28,7 @@ bool dynamics_choose(struct settings *root, struct suspension *s, const struct d
     if (rotation == 2 && s->rotates)
         settings_refuse(chosen, "rotation", e, "must be \"auto\" or \"on\": a force of this scene turns particles");
     s->rotates = s->rotates || rotation == 1;
-    s->implicit_friction = *d && !(*d)->explicit_friction;
+    s->implicit_friction = *d && (*d)->friction;
     s->predicted_friction = *d == &predicted_verlet;
     s->friction_sweeps = s->implicit_friction && settings_has(chosen, "friction") && settings_choice(chosen, "friction", solutions, e) == 1;
     if (s->implicit_friction && !s->friction_sweeps)

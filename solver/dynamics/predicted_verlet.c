@@ -74,4 +74,4 @@ static bool predicted_step(const struct dynamics *self, struct suspension *s, bo
     return true;
 }
 
-const struct dynamics predicted_verlet = { "predicted_verlet", predicted_step, predicted_begin, predicted_free, NULL, true };
+const struct dynamics predicted_verlet = { "predicted_verlet", predicted_step, predicted_begin, predicted_free, NULL };

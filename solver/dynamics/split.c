@@ -121,4 +121,4 @@ static bool split_step(const struct dynamics *self, struct suspension *s, bool *
     return true;
 }
 
-const struct dynamics split = { "split", split_step, split_begin, split_free, friction_step, false };
+const struct dynamics split = { "split", split_step, split_begin, split_free, friction_step };

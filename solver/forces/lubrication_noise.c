@@ -64,7 +64,6 @@ struct force *lubrication_noise_new(struct settings *s, const struct suspension 
     noise->kT = in->kT;
     noise->key = in->key;
     noise->law = (enum noise_law)settings_choice(s, "distribution", laws, e);
-    noise->base.range_factor = noise->drag ? noise->drag->base.range_factor : 0.0;
     if (!noise->drag)
         settings_refuse(s, "", e, "needs forces.lubrication, whose fluctuation it is");
     return &noise->base;
