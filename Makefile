@@ -116,11 +116,14 @@ scaling: all ## time of a step against the number of spheres, 1e2 to 1e5 (expone
 second-opinion: ## LAMMPS's lubrication and noise styles, coefficient by coefficient (docs/lammps.md)
 	@python3 tools/lammps/coefficients.py
 
+work-precision: all ## seconds for 1 % of the pairs near contact, by integrator and step (about 5 minutes; keeps finished rows)
+	@tools/work-precision.sh $B
+
 help: ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 16
 
 clean: ## remove build/
 	rm -rf $B
 
-.PHONY: all setup validate test lines coverage sanitize memcheck scenes faults calibrate bench scaling second-opinion help clean FORCE
+.PHONY: all setup validate test lines coverage sanitize memcheck scenes faults calibrate bench scaling second-opinion work-precision help clean FORCE
 -include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS)))

@@ -183,18 +183,71 @@ static bool evaluate_noise(struct simulation *sim, const struct state_file *stat
     return !error_raised(e);
 }
 
+/*
+ * The friction and noise of one step, from the velocities of each state, `draws` times as at successive steps: the impulses that every
+ * particle gets of them, m (v' - v) and I (w' - w). Driven particles get none.
+ */
+static bool evaluate_friction(struct simulation *sim, const struct state_file *states, long draws, struct error *e)
+{
+    struct suspension *s = &sim->suspension;
+    struct particles *p = &s->particles;
+    const int count = state_file_count(states);
+    struct table t = { .file = NULL };
+    struct destination bare = sim->destination;
+    bare.provenance[0] = 0;
+    if (!sim->dynamics->friction)
+        return error_raise(e, ERROR_UNSUPPORTED, "dynamics %s has no friction step of its own", sim->dynamics->name);
+    if (!table_open(&t, &bare, "friction.npy", e))
+        return false;
+    for (int state = 0; state < count && !error_raised(e); state++) {
+        bool relisted;
+        if (!place(s, states, state, e) || !neighbours_find(&s->neighbours, &s->box, p, &relisted, e))
+            break;
+        if (state == 0)
+            npy_header(t.file, draws * count, p->count);
+        vec3 *before = calloc(2 * (size_t)p->count, sizeof *before), *spin = before + p->count;
+        for (int i = 0; before && i < p->count; i++) {
+            before[i] = p->velocity[i];
+            spin[i] = p->spin ? p->spin[i] : vec(0, 0, 0);
+        }
+        for (long draw = 0; before && draw < draws && !error_raised(e); draw++) {
+            for (int i = 0; i < p->count; i++) {
+                p->velocity[i] = before[i];
+                if (p->spin)
+                    p->spin[i] = spin[i];
+            }
+            s->step++;
+            if (!sim->dynamics->friction(sim->dynamics, s, e))
+                break;
+            for (int i = 0; i < p->count; i++) {
+                const bool free_one = !p->kind[p->species[i]].driven;
+                const vec3 push = scaled(minus(p->velocity[i], before[i]), free_one ? mass_of(p, i) : 0.0);
+                const vec3 turn = p->spin && free_one ? scaled(minus(p->spin[i], spin[i]), inertia_of(p, i)) : vec(0, 0, 0);
+                fwrite(&push, sizeof(double), 3, t.file);
+                fwrite(&turn, sizeof(double), 3, t.file);
+            }
+        }
+        if (!before)
+            error_out_of_memory(e);
+        free(before);
+    }
+    table_close(&t, e);
+    return !error_raised(e);
+}
+
 bool evaluate_case(const char *case_folder, const char *out_folder, struct error *e)
 {
-    static const char *const protocols[] = { "forces", "noise", "run", NULL };
+    static const char *const protocols[] = { "forces", "noise", "friction", "run", NULL };
+    enum { FORCES, DRAWS, IMPULSES, RUN };
     char path[512], scene[512], start[512] = "";
     struct settings c;
     snprintf(path, sizeof path, "%.400s/case.json", case_folder);
     if (!settings_load(&c, path, NULL, 0, e))
         return false;
     const int protocol = settings_choice(&c, "protocol", protocols, e);
-    const long draws = protocol == 1 ? (long)settings_whole(&c, "draws", 1, 1000000000, e) : 0;
+    const long draws = protocol == DRAWS || protocol == IMPULSES ? (long)settings_whole(&c, "draws", 1, 1000000000, e) : 0;
     snprintf(scene, sizeof scene, "%.350s/%.150s", case_folder, settings_text(&c, "scene", e));
-    if (protocol != 2)
+    if (protocol != RUN)
         snprintf(start, sizeof start, "%.350s/%.150s", case_folder, settings_text(&c, "states", e));
     struct contacts contacts = { 0, NULL };
     if (!error_raised(e) && settings_has(&c, "contacts")) {
@@ -204,17 +257,19 @@ bool evaluate_case(const char *case_folder, const char *out_folder, struct error
     settings_unload(&c);
 
     struct simulation *sim = calloc(1, sizeof *sim);
-    struct state_file *states = error_raised(e) || protocol == 2 ? NULL : state_file_read(start, e);
-    const struct scene_options options = { .states = protocol == 2 ? NULL : start, .frozen = protocol != 2 };
+    struct state_file *states = error_raised(e) || protocol == RUN ? NULL : state_file_read(start, e);
+    const struct scene_options options = { .states = protocol == RUN ? NULL : start, .frozen = protocol != RUN };
     if (!sim)
         error_out_of_memory(e);
     else if (!error_raised(e) && scene_build(scene, &options, sim, e)) {
         if (!destination_make(&sim->destination, out_folder, e))
             ;
-        else if (protocol == 0)
+        else if (protocol == FORCES)
             evaluate_forces(sim, states, &contacts, e);
-        else if (protocol == 1)
+        else if (protocol == DRAWS)
             evaluate_noise(sim, states, draws, e);
+        else if (protocol == IMPULSES)
+            evaluate_friction(sim, states, draws, e);
         else if (simulation_begin(sim, e))
             simulation_run(sim, e);
     }

@@ -11,7 +11,7 @@ struct dynamics {
     /* Forces at the start, where nothing has moved yet. */
     bool (*begin)(const struct dynamics *self, struct suspension *s, bool *relisted, struct error *e);
     void (*free)(struct suspension *s);     /* what it keeps in s->dynamics_state; NULL: nothing */
-    bool explicit_friction;                 /* its step is limited by drag and lubrication, and biased by noise */
+    bool (*friction)(const struct dynamics *self, struct suspension *s, struct error *e);   /* its friction and noise alone; NULL: it is explicit */
 };
 
 #endif

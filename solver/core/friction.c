@@ -65,7 +65,7 @@ bool friction_gather(struct friction *f, const struct suspension *s, double dt, 
             if (s->force[w]->kind == FRICTION && s->force[w]->respond)
                 s->force[w]->respond(s->force[w], p, p->species[pair->i], p->species[pair->j], pair->gap, &r);
         if (r.resistance.X_A > 0.0)
-            f->link[f->links++] = (struct friction_link){ pair->i, pair->j, pair->normal, r.resistance };
+            f->link[f->links++] = (struct friction_link){ pair->i, pair->j, k, pair->normal, r.resistance };
     }
     return true;
 }

@@ -15,7 +15,7 @@
 
 #include "core/suspension.h"
 
-struct friction_link { int i, j; vec3 normal; struct resistance resistance; };
+struct friction_link { int i, j, pair; vec3 normal; struct resistance resistance; };      /* pair: its place among the near pairs */
 
 struct friction {
     int count, links, room, width;          /* particles; resisted pairs; numbers per particle: 3, or 6 with spins */

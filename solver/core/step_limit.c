@@ -6,8 +6,12 @@
 
 typedef struct { double m[6][6]; } block;
 
-/* From w^2 dt^2 + 2 g dt = 4. */
-static double limit_of(double g, double w2) { return 4.0 / (g + sqrt(g * g + 4.0 * w2)); }
+/* From w^2 dt^2 + 2 g dt = 4; with 4 g dt where friction acts at predicted velocities. */
+static double limit_of(const struct suspension *s, double g, double w2)
+{
+    const double friction = s->predicted_friction ? 2.0 * g : g;
+    return 4.0 / (friction + sqrt(friction * friction + 4.0 * w2));
+}
 
 /* Largest eigenvalue of a symmetric positive semidefinite block, from above by at most 6 %: |A^16|^(1/16), Frobenius norm. */
 static double largest_eigenvalue(block A)
@@ -109,7 +113,7 @@ static void judge(struct step_limit *worst, const struct suspension *s, const st
     drag_rates(s, only, species, drag);
     const double g = largest_eigenvalue(at->friction) + fmax(drag[0], drag[1]);
     const double w2 = largest_eigenvalue(at->stiffness) + stiffness_alone(s, only, species) / s->particles.kind[species].mass;
-    const double dt = limit_of(g, w2);
+    const double dt = limit_of(s, g, w2);
     if (dt < worst->dt)
         *worst = (struct step_limit){ dt, NULL, tag, neighbours, g, w2 };
 }
@@ -199,7 +203,7 @@ static bool surely_stable(const struct suspension *s, double dt)
         double drag[2];
         drag_rates(s, NULL, p->species[i], drag);
         const double w2 = trace[i][1] + stiffness_alone(s, NULL, p->species[i]) / mass_of(p, i);
-        stable = dt < limit_of(trace[i][0] + fmax(drag[0], drag[1]), w2);
+        stable = dt < limit_of(s, trace[i][0] + fmax(drag[0], drag[1]), w2);
     }
     struct step_limit lone = { INFINITY, NULL, 0, 0, 0.0, 0.0 };
     judge_lone_pairs(&lone, s, NULL);
@@ -240,10 +244,12 @@ double step_advised(const struct suspension *s)
 double step_bias(const struct suspension *s, double dt)
 {
     const struct particles *p = &s->particles;
+    struct suspension any = *s;
+    any.implicit_friction = false;                          /* friction counts, whoever takes care of it */
     double eps = 0.0;
     for (int a = 0; a < p->species_count; a++)
         for (int b = 0; b < p->species_count && p->count > 1; b++)
-            eps = fmax(eps, response_of(s, NULL, a, b, -1e-300).resistance.X_A * dt * (1.0 / p->kind[a].mass + 1.0 / p->kind[b].mass));
+            eps = fmax(eps, response_of(&any, NULL, a, b, -1e-300).resistance.X_A * dt * (1.0 / p->kind[a].mass + 1.0 / p->kind[b].mass));
     return eps;
 }
 

@@ -26,7 +26,7 @@ struct suspension {
     bool measuring;                         /* the next evaluation also sums the stress */
     double overlap_limit;                   /* a run stops at a deeper one; fraction of the smaller radius */
     void *dynamics_state;                   /* what the equation of motion keeps between steps */
-    bool implicit_friction;                 /* friction does not limit the step */
+    bool implicit_friction, friction_sweeps, predicted_friction;    /* solved (all at once, or pair by pair), or at predicted velocities */
     double friction_residual;               /* to which an implicit friction step is solved */
     int64_t step;
     double start_time, dt;                  /* time = start_time + step dt */

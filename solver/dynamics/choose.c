@@ -1,7 +1,8 @@
 /*
  * The scene's choice of an equation of motion, of whether particles rotate, and of the step.
  *
- * "dynamics": { "split": { "dt": 1e-3, "rotation": "auto", "residual": 1e-10 } }
+ * "dynamics": { "split": { "dt": 1e-3, "rotation": "auto", "friction": "global", "residual": 1e-10 } }
+ * "dynamics": { "split": { "dt": 1e-3, "friction": "sweeps" } }
  */
 #include "core/step_limit.h"
 #include "dynamics/dynamics.h"
@@ -10,7 +11,7 @@ static const struct dynamics *const dynamics_rows[] = { &verlet, &predicted_verl
 
 bool dynamics_choose(struct settings *root, struct suspension *s, const struct dynamics **d, struct settings *chosen, struct error *e)
 {
-    static const char *const rotations[] = { "auto", "on", "off", NULL };
+    static const char *const rotations[] = { "auto", "on", "off", NULL }, *const solutions[] = { "global", "sweeps", NULL };
     struct settings dynamics = settings_child(root, "dynamics", e);
     for (size_t k = 0; k < sizeof dynamics_rows / sizeof *dynamics_rows && dynamics.node; k++)
         if (settings_has(&dynamics, dynamics_rows[k]->name)) {
@@ -27,8 +28,10 @@ bool dynamics_choose(struct settings *root, struct suspension *s, const struct d
     if (rotation == 2 && s->rotates)
         settings_refuse(chosen, "rotation", e, "must be \"auto\" or \"on\": a force of this scene turns particles");
     s->rotates = s->rotates || rotation == 1;
-    s->implicit_friction = *d && !(*d)->explicit_friction;
-    if (s->implicit_friction)
+    s->implicit_friction = *d && (*d)->friction;
+    s->predicted_friction = *d == &predicted_verlet;
+    s->friction_sweeps = s->implicit_friction && settings_has(chosen, "friction") && settings_choice(chosen, "friction", solutions, e) == 1;
+    if (s->implicit_friction && !s->friction_sweeps)
         s->friction_residual = settings_number_or(chosen, "residual", 1e-10, e);
     return !error_raised(e);
 }

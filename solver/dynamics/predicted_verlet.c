@@ -8,8 +8,11 @@
  *     kick    U_{n+1} = U + dt/2 a_{n+1}
  *
  * The prediction is right to dt^2, so the scheme is second order for forces that depend smoothly on velocity too (drag,
- * lubrication); with half-step velocities it would be first. Noise has no smoothness to gain from: it samples no better than `verlet` there,
- * and its step limit is the same or smaller. Source: Groot & Warren (1997), their scheme with lambda = 1.
+ * lubrication); with half-step velocities it would be first. Stable while w^2 dt^2 + 4 g dt < 4: half the friction that `verlet` bears.
+ *
+ * With noise of linear drag, eps = drag dt/m, exact at any step: full-step <U^2> = (kT/m)/(1 + eps/2), low to first order, while half-step
+ * <U^2> = (kT/m)(1 - eps/2)/((1 - eps)(1 + eps/2)) is right to eps^2. So where friction changes with the gap, density is wrong to second order
+ * only: (1 - eps)^(1/3) (1 + eps/2)^(2/3), about 1 - eps^2/4 (derived in docs/integrators.md). Source: Groot & Warren (1997), lambda = 1.
  */
 #include "core/motion.h"
 #include "dynamics/dynamics.h"
@@ -72,4 +75,4 @@ static bool predicted_step(const struct dynamics *self, struct suspension *s, bo
     return true;
 }
 
-const struct dynamics predicted_verlet = { "predicted_verlet", predicted_step, predicted_begin, predicted_free, true };
+const struct dynamics predicted_verlet = { "predicted_verlet", predicted_step, predicted_begin, predicted_free, NULL };

@@ -3,7 +3,7 @@
  *
  *     kick      dt/2   contact, repulsion and other forces of position          U, W
  *     drift     dt/2                                                            x
- *     friction  dt     drag, lubrication and all noise at fixed x, midpoint     U, W     (core/friction.h)
+ *     friction  dt     drag, lubrication and all noise at fixed x, midpoint     U, W     (core/friction.h, or core/sweeps.h)
  *     drift     dt/2                                                            x
  *     kick      dt/2   with the forces at the new x
  *
@@ -18,6 +18,7 @@
  */
 #include "core/friction.h"
 #include "core/motion.h"
+#include "core/sweeps.h"
 #include "dynamics/dynamics.h"
 
 #include <stdlib.h>
@@ -37,17 +38,20 @@ static void split_free(struct suspension *s)
     s->dynamics_state = NULL;
 }
 
-static bool split_begin(const struct dynamics *self, struct suspension *s, bool *relisted, struct error *e)
+static bool make_state(struct suspension *s, struct error *e)
 {
     const size_t n = (size_t)s->particles.count + 1;
+    if (s->dynamics_state)
+        return true;
+    struct split_state *own = calloc(1, sizeof *own);
+    s->dynamics_state = own;
+    return (own && (own->mean_velocity = calloc(n, sizeof(vec3))) && (own->mean_spin = calloc(n, sizeof(vec3)))) || error_out_of_memory(e);
+}
+
+static bool split_begin(const struct dynamics *self, struct suspension *s, bool *relisted, struct error *e)
+{
     (void)self;
-    if (!s->dynamics_state) {
-        struct split_state *own = calloc(1, sizeof *own);
-        s->dynamics_state = own;
-        if (!own || !(own->mean_velocity = calloc(n, sizeof(vec3))) || !(own->mean_spin = calloc(n, sizeof(vec3))))
-            return error_out_of_memory(e);
-    }
-    if (!suspension_find(s, relisted, e))
+    if (!make_state(s, e) || !suspension_find(s, relisted, e))
         return false;
     const struct moment now = moment_of(s, 0.0);
     if (s->measuring)
@@ -57,10 +61,16 @@ static bool split_begin(const struct dynamics *self, struct suspension *s, bool 
 }
 
 /* U, W over dt at fixed positions; particles' forces are those of the mean velocity afterwards. */
-static bool friction_step(struct suspension *s, struct friction *f, struct error *e)
+static bool friction_step(const struct dynamics *self, struct suspension *s, struct error *e)
 {
+    (void)self;
+    if (!make_state(s, e))
+        return false;
+    struct friction *f = &((struct split_state *)s->dynamics_state)->friction;
     const struct moment now = moment_of(s, 0.0);
     const bool measuring = s->measuring;
+    if (s->friction_sweeps)
+        return sweeps_step(f, s, e);
     if (!friction_gather(f, s, s->dt, e))
         return false;
     s->measuring = false;
@@ -91,12 +101,11 @@ static bool split_step(const struct dynamics *self, struct suspension *s, bool *
 {
     struct split_state *own = s->dynamics_state;
     bool halfway;
-    (void)self;
     kick(s, 0.5 * s->dt);
     drift(s, 0.5 * s->dt);
     s->step++;
     box_set_time(&s->box, s->start_time + ((double)s->step - 0.5) * s->dt);
-    if (!suspension_find(s, &halfway, e) || !friction_step(s, &own->friction, e))
+    if (!suspension_find(s, &halfway, e) || !friction_step(self, s, e))
         return false;
     drift(s, 0.5 * s->dt);
     box_set_time(&s->box, s->start_time + (double)s->step * s->dt);
@@ -112,4 +121,4 @@ static bool split_step(const struct dynamics *self, struct suspension *s, bool *
     return true;
 }
 
-const struct dynamics split = { "split", split_step, split_begin, split_free, false };
+const struct dynamics split = { "split", split_step, split_begin, split_free, friction_step };

@@ -43,4 +43,4 @@ static bool verlet_begin(const struct dynamics *self, struct suspension *s, bool
     return true;
 }
 
-const struct dynamics verlet = { "verlet", verlet_step, verlet_begin, NULL, true };
+const struct dynamics verlet = { "verlet", verlet_step, verlet_begin, NULL, NULL };

@@ -22,24 +22,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { STREAMS = 2, DRAG = 0, LUBRICATION = 1 };
 static const char *const force_of[STREAMS] = { "drag", "lubrication" };
-static const char *const noise_of[STREAMS] = { "drag_noise", "lubrication_noise" };
-static const char *const short_of[STREAMS] = { "drag", "pair" };
-
-struct subject {
-    struct check_run *run;
-    const struct frozen *f;
-    size_t size, draws;             /* 6 N, number of draws */
-    double dt, kT;
-    double *R[STREAMS], *draw[STREAMS], *white[STREAMS];
-    struct whitening whitening[STREAMS];
+static const struct { const char *file, *name, *law; } kind_of[KINDS] = {
+    { "noise_drag_noise.npy", "drag noise", "(2 kT/dt) R, R from the candidate's own drag" },
+    { "noise_lubrication_noise.npy", "pair noise", "(2 kT/dt) R, R from the candidate's own lubrication" },
+    { "friction.npy", "noise of the friction step", "kT (M - C M C^T), C from the candidate's own step without noise" },
 };
 
-/* z that an effect must reach to be seen: 3.9 is the alarm (two-sided p = 1e-4), 2 more see it 39 times in 40. */
-static const double seen = 5.9;
+static const double seen = NOISE_SEEN;
 
-static double declared(const struct subject *s, const char *key)
+double noise_declared(const struct subject *s, const char *key)
 {
     char path[64];
     snprintf(path, sizeof path, "declared.%s", key);
@@ -49,7 +41,7 @@ static double declared(const struct subject *s, const char *key)
 /* "pair torque" and the like: unique result names in buffers that live as long as the call needs them. */
 static const char *named(char text[96], int stream, const char *what)
 {
-    snprintf(text, 96, "%s noise: %s", short_of[stream], what);
+    snprintf(text, 96, "%s: %s", kind_of[stream].name, what);
     return text;
 }
 
@@ -160,7 +152,7 @@ static void draw_picture(const struct subject *s, int stream, const double *C, c
     if (!panel)
         return;
     char path[PATH_LENGTH], name[96], caption[200];
-    snprintf(name, sizeof name, "covariance-%s%s.svg", noise_of[stream], s->run->attempt > 1 ? "-rerun" : "");
+    snprintf(name, sizeof name, "covariance-%d%s.svg", stream, s->run->attempt > 1 ? "-rerun" : "");
     path_join(path, s->run->work, name);
     double *measured = panel, *expected = panel + n * n, *off = panel + 2 * n * n;
     scaled_by(C, s->R[stream], n, measured);
@@ -174,11 +166,11 @@ static void draw_picture(const struct subject *s, int stream, const double *C, c
             measured[k] = 0.0;
     }
     const struct heatmap_panel panels[3] = { { "measured covariance", measured, 1.0 },
-                                             { "expected, (2kT/dt) R", expected, 1.0 },
+                                             { "expected", expected, 1.0 },
                                              { "difference in standard errors", off, 12.0 } };
     snprintf(caption, sizeof caption,
              "%s, %zu draws; a square for each sphere: force x y z, torque x y z; scaled by expected variances. Right: only above 3.",
-             noise_of[stream], s->draws);
+             kind_of[stream].name, s->draws);
     const struct heatmap map = { .size = n, .group = 6, .panel = panels, .panels = 3, .caption = caption,
                                  .marked_row = 3 * worst->a, .marked_column = 3 * worst->b, .marked_size = mark ? 3 : 0 };
     if (heatmap_write(path, &map))
@@ -209,10 +201,10 @@ static const char *blame(char text[640], const struct subject *s, int stream, co
         hint = " The sign of the second sphere's torque noise (a minus; the plus of Li's printed eq 3.24 is wrong) shows here and"
                " nowhere else.";
     if (isnan(w->ratio))
-        snprintf(text, 640, "block %s of the %s covariance should vanish, and does not (z = %.3g)", block, short_of[stream], w->z);
+        snprintf(text, 640, "block %s of the covariance of the %s should vanish, and does not (z = %.3g)", block, kind_of[stream].name, w->z);
     else
-        snprintf(text, 640, "block %s of the %s covariance is %.4g times what the candidate's own resistance asks for (z = %.3g).%s",
-                 block, short_of[stream], w->ratio, w->z, hint);
+        snprintf(text, 640, "block %s of the covariance of the %s is %.4g times what the candidate's own resistance asks for (z = %.3g).%s",
+                 block, kind_of[stream].name, w->ratio, w->z, hint);
     return text;
 }
 
@@ -221,7 +213,7 @@ static void judge_blocks(const struct subject *s, int stream, const double *C, c
     char name[96], text[640];
     const bool pair = stream == LUBRICATION;
     struct result *r = check_p(s->run, INVARIANT, named(name, stream, "worst block"), w->ratio, isnan(w->ratio) ? NAN : 1.0, w->p,
-                               pair ? torque_resolution(s, stream) : NAN, pair ? declared(s, "torque_block") : NAN, "%s",
+                               pair ? torque_resolution(s, stream) : NAN, pair ? noise_declared(s, "torque_block") : NAN, "%s",
                                blame(text, s, stream, w));
     char block[160];
     result_notes(r, "Most deviating of all 3 x 3 blocks: %s, measured over expected %.4g, z = %.3g; p is corrected for the search. "
@@ -252,7 +244,7 @@ static void whiten_by_itself(struct subject *s, int stream, const double *C)
     s->whitening[stream] = own;
 }
 
-static void judge_stream(struct subject *s, int stream, double stray)
+void noise_judge(struct subject *s, int stream, double stray)
 {
     struct check_run *run = s->run;
     const size_t n = s->draws;
@@ -264,20 +256,18 @@ static void judge_stream(struct subject *s, int stream, double stray)
     blame(text, s, stream, &worst);
 
     check_error(run, INVARIANT, named(name, stream, "nothing outside the range of R"), stray, 0.0, stray, 1e-12,
-                "the %s noise drives motions that the candidate's own %s does not resist (rigid translation, rolling, pairs out of "
-                "reach): up to %.3g of the largest. Most deviating: %s", short_of[stream], force_of[stream], stray, text);
+                "the %s drives motions that the candidate's own friction does not resist (rigid translation, rolling, pairs out of "
+                "reach): up to %.3g of the largest. Most deviating: %s", kind_of[stream].name, stray, text);
 
     const double size_p = statistics_scale_p(s->white[stream], n, s->whitening[stream].rank, &ratio);
-    check_p(run, INVARIANT, named(name, stream, "size"), ratio, 1.0, size_p, seen * sqrt(2.0 / (count * wide)), declared(s, "size"),
-            "the variance of the %s noise is %.5g times 2 kT R/dt, R from the candidate's own %s.%s", short_of[stream], ratio,
-            force_of[stream], guess(s, ratio));
+    check_p(run, INVARIANT, named(name, stream, "size"), ratio, 1.0, size_p, seen * sqrt(2.0 / (count * wide)), noise_declared(s, "size"),
+            "the variance of the %s is %.5g times %s.%s", kind_of[stream].name, ratio, kind_of[stream].law, guess(s, ratio));
 
     /* n |S - 1|^2/2 (Frobenius) must reach `seen` standard deviations of chi-squared with p(p + 1)/2 degrees */
     const double covariance_p = statistics_identity_p(s->white[stream], n, s->whitening[stream].rank);
     check_p(run, INVARIANT, named(name, stream, "covariance"), NAN, NAN, covariance_p,
-            sqrt(2.0 * seen * (wide + 0.5) / (count * wide)), declared(s, "covariance"),
-            "the covariance of the %s noise is not (2 kT/dt) R, R from the candidate's own %s; %s", short_of[stream],
-            force_of[stream], text);
+            sqrt(2.0 * seen * (wide + 0.5) / (count * wide)), noise_declared(s, "covariance"),
+            "the covariance of the %s is not %s; %s", kind_of[stream].name, kind_of[stream].law, text);
     judge_blocks(s, stream, C, &worst);
 
     if (size_p < 1e-6 || covariance_p < 1e-6 || stray > 1e-6)
@@ -288,18 +278,18 @@ static void judge_stream(struct subject *s, int stream, double stray)
     wide = (double)p;
 
     check_p(run, INVARIANT, named(name, stream, "mean"), NAN, 0.0, statistics_mean_p(z, n, p),
-            sqrt(seen * sqrt(2.0 / wide) / count), declared(s, "mean"), "the %s noise has a mean: it pushes instead of only shaking",
-            short_of[stream]);
+            sqrt(seen * sqrt(2.0 / wide) / count), noise_declared(s, "mean"), "the %s has a mean: it pushes instead of only shaking",
+            kind_of[stream].name);
     for (size_t lag = 1; lag <= 2; lag++) {
         char what[32];
         snprintf(what, sizeof what, "white, lag %zu", lag);
         check_p(run, INVARIANT, named(name, stream, what), NAN, 0.0, statistics_lag_p(z, n, p, lag), sqrt(seen * sqrt(2.0) / count),
-                declared(s, "lag"), "the %s noise remembers the draw %zu step%s before", short_of[stream], lag, lag > 1 ? "s" : "");
+                noise_declared(s, "lag"), "the %s remembers the draw %zu step%s before", kind_of[stream].name, lag, lag > 1 ? "s" : "");
     }
     const double fourth_p = statistics_fourth_moment_p(z, n, p, &fourth);
     check_p(run, MODEL, named(name, stream, "Gaussian"), fourth, 3.0, fourth_p, seen * sqrt(96.0 / (count * wide)) / 3.0,
-            declared(s, "fourth_moment"), "the fourth moment of the %s noise is %.4g, a Gaussian has 3 (uniform numbers: 1.8)",
-            short_of[stream], fourth);
+            noise_declared(s, "fourth_moment"), "the fourth moment of the %s is %.4g, a Gaussian has 3 (uniform numbers: 1.8)",
+            kind_of[stream].name, fourth);
 }
 
 /*
@@ -337,7 +327,7 @@ static void judge_pairs(const struct subject *s)
                 variance += 12.0 * terms * (double)rank[c] / count;
         }
     check_p(s->run, INVARIANT, "pair noise: pairs independent", NAN, 0.0, used > 1 ? statistics_matched_p(sum, mean, variance) : NAN,
-            sqrt(seen * sqrt(2.0 * mean) / (0.2 * mean * count)), declared(s, "lag"),
+            sqrt(seen * sqrt(2.0 * mean) / (0.2 * mean * count)), noise_declared(s, "lag"),
             "the noise of one isolated pair is correlated with that of another: pairs share random numbers");
     for (size_t k = 0; k < used; k++)
         free(z[k]);
@@ -352,18 +342,42 @@ static void judge_realisation(const struct subject *s, json_t *scene, const stru
     if (!check_ask(s->run, "other-realisation", q, out))
         return;
     for (int k = 0; k < STREAMS; k++) {
-        double *draw = noise_draws(s->run, out, noise_of[k], s->draws, s->f, unit);
+        double *draw = noise_draws(s->run, out, kind_of[k].file, s->draws, s->f, unit);
         const struct whitening *w = &s->whitening[k];
         double *z = draw ? malloc(s->draws * w->rank * sizeof *z) : NULL;
         if (z) {
             whitening_apply(w, draw, s->draws, z);
             check_p(s->run, INVARIANT, named(name, k, "realisations independent"), NAN, 0.0,
                     statistics_cross_p(s->white[k], w->rank, z, w->rank, s->draws), sqrt(seen * sqrt(2.0) / (double)s->draws),
-                    declared(s, "lag"), "realisations 0 and 1 of the %s noise are correlated: they are no independent samples",
-                    short_of[k]);
+                    noise_declared(s, "lag"), "realisations 0 and 1 of the %s are correlated: they are no independent samples",
+                    kind_of[k].name);
         }
         free(z);
         free(draw);
+    }
+}
+
+bool noise_whiten(struct subject *s, int stream, double *stray)
+{
+    struct whitening *w = &s->whitening[stream];
+    if (!whitening_make(s->R[stream], s->size, 1e-11, w) || !(s->white[stream] = malloc((s->draws * w->rank + 1) * sizeof(double))))
+        return false;
+    check_progress(s->run, "%s, %zu draws", kind_of[stream].name, s->draws);
+    *stray = whitening_apply(w, s->draw[stream], s->draws, s->white[stream]);
+    if (w->rank == 0 || w->rank >= s->draws) {
+        check_garbage(s->run, "the resistance matrix measured from the forces is empty");
+        return false;
+    }
+    return true;
+}
+
+void subject_free(struct subject *s)
+{
+    for (int k = 0; k < KINDS; k++) {
+        free(s->R[k]);
+        free(s->draw[k]);
+        free(s->white[k]);
+        whitening_free(&s->whitening[k]);
     }
 }
 
@@ -381,22 +395,16 @@ static void judge_noise(struct subject *s, json_t *scene, bool isolated)
         return;
     bool good = true;
     for (int k = 0; k < STREAMS && good; k++) {
-        good = (s->draw[k] = noise_draws(s->run, out, noise_of[k], s->draws, s->f, unit)) != NULL
-               && whitening_make(s->R[k], s->size, 1e-11, &s->whitening[k])
-               && (s->white[k] = malloc((s->draws * s->whitening[k].rank + 1) * sizeof(double))) != NULL;
-        if (!good)
-            return;
-        check_progress(s->run, "%s, %zu draws", noise_of[k], s->draws);
-        const double stray = whitening_apply(&s->whitening[k], s->draw[k], s->draws, s->white[k]);
-        if (s->whitening[k].rank == 0 || s->whitening[k].rank >= s->draws) {
-            check_garbage(s->run, "the resistance matrix measured from the forces is empty");
-            return;
-        }
-        judge_stream(s, k, stray);
+        double stray;
+        good = (s->draw[k] = noise_draws(s->run, out, kind_of[k].file, s->draws, s->f, unit)) != NULL && noise_whiten(s, k, &stray);
+        if (good)
+            noise_judge(s, k, stray);
     }
+    if (!good)
+        return;
     check_p(s->run, INVARIANT, "streams independent", NAN, 0.0,
             statistics_cross_p(s->white[DRAG], s->whitening[DRAG].rank, s->white[LUBRICATION], s->whitening[LUBRICATION].rank, s->draws),
-            sqrt(seen * sqrt(2.0) / (double)s->draws), declared(s, "lag"),
+            sqrt(seen * sqrt(2.0) / (double)s->draws), noise_declared(s, "lag"),
             "one-body and pair noise are correlated: they use the same random numbers");
     if (isolated)
         judge_pairs(s);
@@ -417,12 +425,7 @@ static void judge_frozen(struct check_run *run, const struct model *m, const str
         judge_model(&s, m);
         judge_noise(&s, scene, isolated);
     }
-    for (int k = 0; k < STREAMS; k++) {
-        free(s.R[k]);
-        free(s.draw[k]);
-        free(s.white[k]);
-        whitening_free(&s.whitening[k]);
-    }
+    subject_free(&s);
     json_decref(scene);
 }
 

@@ -7,6 +7,7 @@
 #define NOISE_H
 
 #include "pair.h"
+#include "statistics.h"
 
 /* Spheres at rest at fixed places. Neighbours are told as pairs so that a verdict can speak of them. */
 struct frozen {
@@ -34,7 +35,30 @@ bool measure_resistance(struct check_run *run, json_t *scene, const struct froze
 /* The same for lubrication from the declared model, all pairs and images. */
 void theory_resistance(const struct model *m, const struct frozen *f, double *R);
 
-/* Draws of noise_<force>.npy, draws x 6N, divided by sqrt(2 kT/dt). Null after recording what is wrong. Caller frees. */
-double *noise_draws(struct check_run *run, const char *out, const char *force, size_t draws, const struct frozen *f, double unit);
+/* Draws of an NPY file, draws x 6N, divided by `unit`. Null after recording what is wrong. Caller frees. */
+double *noise_draws(struct check_run *run, const char *out, const char *file, size_t draws, const struct frozen *f, double unit);
+
+/*
+ * What is tested against what: draws of a frozen configuration, whitened by the covariance that they should have. One-body and pair noise
+ * share a subject; the impulses of a friction step (friction_step.c) are a third kind.
+ */
+enum noise_stream { DRAG, LUBRICATION, STREAMS, FRICTION_STEP = STREAMS, KINDS };
+struct subject {
+    struct check_run *run;
+    const struct frozen *f;
+    size_t size, draws;             /* 6 N, number of draws */
+    double dt, kT;
+    double *R[KINDS], *draw[KINDS], *white[KINDS];      /* covariance asked for, in the unit of the draws; the draws; whitened by it */
+    struct whitening whitening[KINDS];
+};
+
+/* Whitens the draws. False: out of memory, or there is nothing to whiten by (recorded). */
+bool noise_whiten(struct subject *s, int stream, double *stray);
+/* Size, covariance, blocks, mean, whiteness, fourth moment; what is outside the range of R. */
+void noise_judge(struct subject *s, int stream, double stray);
+/* z that an effect must reach to be seen: 3.9 is the alarm (two-sided p = 1e-4), 2 more see it 39 times in 40. */
+#define NOISE_SEEN 5.9
+double noise_declared(const struct subject *s, const char *key);       /* parameters.declared.<key> */
+void subject_free(struct subject *s);
 
 #endif

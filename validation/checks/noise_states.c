@@ -213,13 +213,12 @@ void theory_resistance(const struct model *m, const struct frozen *f, double *R)
         }
 }
 
-double *noise_draws(struct check_run *run, const char *out, const char *force, size_t draws, const struct frozen *f, double unit)
+double *noise_draws(struct check_run *run, const char *out, const char *file, size_t draws, const struct frozen *f, double unit)
 {
-    char name[64], path[PATH_LENGTH], why[WHY_LENGTH];
+    char path[PATH_LENGTH], why[WHY_LENGTH];
     size_t shape[3] = { draws, f->count, 6 };
     double *value;
-    snprintf(name, sizeof name, "noise_%s.npy", force);
-    path_join(path, out, name);
+    path_join(path, out, file);
     if (!npy_read(path, 3, shape, &value, why)) {
         check_garbage(run, why);
         return NULL;

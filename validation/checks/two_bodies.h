@@ -53,6 +53,7 @@ void check_approach(struct check_run *run);
 void check_pushed(struct check_run *run);
 void check_equipartition(struct check_run *run);
 void check_boltzmann(struct check_run *run);
+void check_trapped_pair(struct check_run *run);
 void check_metamorphic(struct check_run *run);
 void check_sheared_pairs(struct check_run *run);
 void check_observers(struct check_run *run);
