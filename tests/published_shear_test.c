@@ -37,6 +37,8 @@ static void pair_across_the_face(void)
     check_true(structure_read(&run, folder, &start, 0.25, value, &sum), "snapshot read");
     check_close(sum.snapshots, 1, 0, "the start is discarded");
     check_close(value[ANISOTROPY], 1, 0, "the pair lies on the compressive side");
+    check_true(isnan(value[ANISOTROPY_CONTACT]), "no pair touches");
+    check_close(value[FABRIC], 1, 1e-12, "one direction");
     check_close(value[OVERLAP], 0, 0, "no overlap counts as none");
     const double depth = sqrt(M_PI * kT / 2 / k_n), unit = kT / 1000 / (viscosity * rate);
     check_relative(value[STRUCTURAL], unit * 0.5 * 2 / (0.05 + depth), 1e-12, "(kT/V) sum over both ends of n n/D, shell 0.05");

@@ -24,7 +24,8 @@ enum { MOST_POINTS = 16, MOST_REALISATIONS = 64 };
 
 static const char *const quantity_name[POINT_QUANTITIES] = {
     [VISCOSITY] = "viscosity", [CONTACT] = "contact", [LUBRICATION] = "lubrication", [DRAG] = "drag", [KINETIC] = "kinetic",
-    [PRESSURE] = "pressure", [N1] = "N1", [N2] = "N2", [ANISOTROPY] = "anisotropy", [STRUCTURAL] = "structural",
+    [PRESSURE] = "pressure", [N1] = "N1", [N2] = "N2", [ANISOTROPY] = "anisotropy",
+    [ANISOTROPY_CONTACT] = "anisotropy_contact", [FABRIC] = "fabric", [STRUCTURAL] = "structural",
     [STRUCTURAL_THIN] = "structural_thin", [STRUCTURAL_ZERO] = "structural_zero", [OVERLAP] = "overlap",
     [PEAK_11] = "peak_11", [PEAK_12] = "peak_12", [PEAK_22] = "peak_22"
 };

@@ -8,11 +8,13 @@
 /*
  * Quantities of a point, one number per realisation. After those of flow.h, from snapshots of where the particles are:
  * ANISOTROPY   (c - e)/(c + e): pairs nearer than xi = 0.05 on the compressive side (n_x n_y rate < 0) and on the extensional one
+ * ANISOTROPY_CONTACT   the same of pairs nearer than xi = 0.005
+ * FABRIC       |<exp(2 i angle)>| of pairs nearer than xi = 0.05 in the flow-gradient plane: 0 if all directions are alike, 1 if all are one
  * STRUCTURAL   structural Brownian viscosity, shell 0.05 a; STRUCTURAL_THIN: shell 0.02 a; STRUCTURAL_ZERO: both extrapolated to 0
  * OVERLAP      largest overlap of a pair, relative to the sum of radii
  * PEAK_11, PEAK_12, PEAK_22   where g(r) is largest near the sum of radii of two species [radius of the first species]
  */
-enum { ANISOTROPY = FLOW_QUANTITIES, STRUCTURAL, STRUCTURAL_THIN, STRUCTURAL_ZERO, OVERLAP, PEAK_11, PEAK_12, PEAK_22, POINT_QUANTITIES };
+enum { ANISOTROPY = FLOW_QUANTITIES, ANISOTROPY_CONTACT, FABRIC, STRUCTURAL, STRUCTURAL_THIN, STRUCTURAL_ZERO, OVERLAP, PEAK_11, PEAK_12, PEAK_22, POINT_QUANTITIES };
 
 /* g(r) of all pairs up to STRUCTURE_RANGE radii, and g at contact (xi < 0.05) in the flow-gradient plane against the angle from the flow. */
 enum { STRUCTURE_BINS = 200, STRUCTURE_ANGLES = 24 };

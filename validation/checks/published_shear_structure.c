@@ -18,9 +18,10 @@
 #include <stdlib.h>
 
 static const double shell_of[2] = { 0.05, 0.02 };
+static const double near_of[2] = { 0.05, 0.005 };    /* xi of pairs that count as near, and as touching */
 
 struct count {
-    double compressive, extensional, shear[2], overlap, snapshots, r[STRUCTURE_BINS], ring[STRUCTURE_ANGLES];
+    double compressive[2], extensional[2], harmonic[2], shear[2], overlap, snapshots, r[STRUCTURE_BINS], ring[STRUCTURE_ANGLES];
 };
 
 struct crowd { const struct dense_start *start; double radius[8], unit, depth; };   /* unit: radius of the first species */
@@ -36,14 +37,17 @@ static void see_pair(struct count *c, const struct crowd *crowd, double a, doubl
     for (int k = 0; k < 2; k++)
         c->shear[k] -= nn * ((gap < shell_of[k] * a ? a / (shell_of[k] * a + crowd->depth) : 0)
                              + (gap < shell_of[k] * b ? b / (shell_of[k] * b + crowd->depth) : 0));
-    if (gap >= 0.025 * (a + b))
-        return;
-    *(nn < 0 ? &c->compressive : &c->extensional) += 1;
-    if (fabs(d[2]) < 0.25 * (a + b))    /* within 14.5 degrees of the plane */
+    for (int k = 0; k < 2; k++)
+        if (2 * gap < near_of[k] * (a + b))
+            (nn < 0 ? c->compressive : c->extensional)[k] += 1;
+    if (2 * gap < near_of[0] * (a + b) && fabs(d[2]) < 0.25 * (a + b)) {     /* within 14.5 degrees of the plane */
+        c->harmonic[0] += (d[0] * d[0] - d[1] * d[1]) / (d[0] * d[0] + d[1] * d[1]);
+        c->harmonic[1] += 2 * d[0] * d[1] / (d[0] * d[0] + d[1] * d[1]);
         for (int end = 0; end < 2; end++) {
             const double angle = atan2(end ? -d[1] : d[1], end ? -d[0] : d[0]) / (2 * M_PI);
             c->ring[(int)((angle - floor(angle)) * STRUCTURE_ANGLES) % STRUCTURE_ANGLES] += 1;
         }
+    }
 }
 
 static void see_snapshot(struct count *c, const struct crowd *crowd, const double *x, double time)
@@ -82,7 +86,7 @@ static void conclude(const struct count *c, const struct crowd *crowd, double kT
     const struct dense_start *s = crowd->start;
     const double volume = gsl_pow_3(s->edge), n = (double)s->count, width = STRUCTURE_RANGE / STRUCTURE_BINS * crowd->unit;
     const double per_volume = n * (n - 1) / 2 / volume;
-    double g[STRUCTURE_BINS], near = c->compressive + c->extensional;
+    double g[STRUCTURE_BINS];
     for (int k = 0; k < STRUCTURE_BINS; k++) {
         g[k] = c->r[k] / c->snapshots / (per_volume * 4 * M_PI / 3 * (gsl_pow_3((k + 1) * width) - gsl_pow_3(k * width)));
         sum->g[k] += g[k] * c->snapshots;
@@ -94,7 +98,11 @@ static void conclude(const struct count *c, const struct crowd *crowd, double kT
         sum->ring[k] += in_ring > 0 ? c->ring[k] / in_ring * STRUCTURE_ANGLES * c->snapshots : 0;
     sum->snapshots += c->snapshots;
     const double stress_unit = kT / volume / (s->viscosity * fabs(s->rate)) / c->snapshots;
-    value[ANISOTROPY] = near > 0 ? (c->compressive - c->extensional) / near : NAN;
+    for (int k = 0; k < 2; k++) {
+        const double near = c->compressive[k] + c->extensional[k];
+        value[k ? ANISOTROPY_CONTACT : ANISOTROPY] = near > 0 ? (c->compressive[k] - c->extensional[k]) / near : NAN;
+    }
+    value[FABRIC] = in_ring > 0 ? 2 * hypot(c->harmonic[0], c->harmonic[1]) / in_ring : NAN;
     value[STRUCTURAL] = c->shear[0] * stress_unit;
     value[STRUCTURAL_THIN] = c->shear[1] * stress_unit;
     value[STRUCTURAL_ZERO] = value[STRUCTURAL_THIN] + (value[STRUCTURAL_THIN] - value[STRUCTURAL]) * shell_of[1] / (shell_of[0] - shell_of[1]);
