@@ -69,13 +69,13 @@ static void see_snapshot(struct count *c, const struct crowd *crowd, const doubl
     c->snapshots += 1;
 }
 
-/* Centre of the fullest bin, by g, within 0.2 of r. */
+/* Centre of the fullest bin, by g, within 0.1 of r: farther, the flank of another peak may be higher. */
 static double peak_near(const double *g, double r)
 {
     int best = -1;
     for (int k = 0; k < STRUCTURE_BINS; k++) {
         const double centre = (k + 0.5) * STRUCTURE_RANGE / STRUCTURE_BINS;
-        if (fabs(centre - r) < 0.2 && (best < 0 || g[k] > g[best]))
+        if (fabs(centre - r) < 0.1 && (best < 0 || g[k] > g[best]))
             best = k;
     }
     return (best + 0.5) * STRUCTURE_RANGE / STRUCTURE_BINS;
