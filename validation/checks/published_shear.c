@@ -105,7 +105,8 @@ static bool run_point(struct check_run *run, struct point *p, int k)
     bool good = check_ask(run, name, &question, out);
     p->core_seconds += children_seconds() - before;
     const bool friction = scene_number(s.scene, "forces.contact.friction", 0) > 0;
-    good = good && flow_read(run, out, friction ? "contact_normal,contact_tangential,lubrication,drag" : "contact_normal,lubrication,drag", &flow, &average);
+    const char *origins = friction ? "contact_normal,contact_tangential,lubrication,drag" : "contact_normal,lubrication,drag";
+    good = good && flow_read(run, out, origins, &flow, &average);
     for (int q = 0; good && q < FLOW_QUANTITIES; q++)
         value[q] = average.mean[q];
     good = good && flow_read(run, out, "kinetic", &flow, &average);
@@ -225,7 +226,8 @@ static void judge(struct check_run *run, const json_t *claim, const struct point
     const struct point *b = over || less || other ? point_named(point, points, over ? over : less ? less : of) : NULL;
     const double low = scene_number(claim, "low", NAN), high = scene_number(claim, "high", NAN);
     if (!what || q < 0 || r < 0 || !a || ((over || less || other) && !b) || !(low < high)) {
-        check_error(run, MODEL, what ? what : "claim", NAN, NAN, NAN, NAN, "the case itself is wrong: this claim names no point or quantity, or no bounds");
+        check_error(run, MODEL, what ? what : "claim", NAN, NAN, NAN, NAN,
+                    "the case itself is wrong: this claim names no point or quantity, or no bounds");
         return;
     }
     double error, base_error, value[MOST_REALISATIONS], measured = mean_of(a->value[q], count, &error);

@@ -14,7 +14,10 @@
  * OVERLAP      largest overlap of a pair, relative to the sum of radii
  * PEAK_11, PEAK_12, PEAK_22   where g(r) is largest near the sum of radii of two species [radius of the first species]
  */
-enum { ANISOTROPY = FLOW_QUANTITIES, ANISOTROPY_CONTACT, FABRIC, STRUCTURAL, STRUCTURAL_THIN, STRUCTURAL_ZERO, OVERLAP, PEAK_11, PEAK_12, PEAK_22, POINT_QUANTITIES };
+enum {
+    ANISOTROPY = FLOW_QUANTITIES, ANISOTROPY_CONTACT, FABRIC, STRUCTURAL, STRUCTURAL_THIN, STRUCTURAL_ZERO, OVERLAP, PEAK_11, PEAK_12, PEAK_22,
+    POINT_QUANTITIES
+};
 
 /* g(r) of all pairs up to STRUCTURE_RANGE radii, and g at contact (xi < 0.05) in the flow-gradient plane against the angle from the flow. */
 enum { STRUCTURE_BINS = 200, STRUCTURE_ANGLES = 24 };
