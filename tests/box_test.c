@@ -239,6 +239,26 @@ static void lost_particles_are_named(void)
     particles_free(&p);
 }
 
+/* Steps that meet a tilt of exactly half a cell, give or take rounding: the flip must not undo itself for ever (this test would hang). */
+static void half_a_cell_is_remapped_once(void)
+{
+    const mat3 flow = { { { 0, 0.1, 0 }, { 0 }, { 0 } } };
+    const bool periodic[3] = { true, true, true };
+    for (int k = 0; k < 200; k++) {
+        const double edge = 10.385666856777812 + 0.01 * k;
+        const mat3 cell = { { { edge, 0, 0 }, { 0, edge, 0 }, { 0, 0, edge } } };
+        struct box b;
+        struct error e = { 0 };
+        check_true(box_new(&b, &cell, periodic, &flow, &e), e.text);
+        for (int n = 0; n < 40; n++) {
+            box_set_time(&b, (1250 + 2500 * n) * 0.004);    /* strain n + 1/2 */
+            box_remap(&b);
+            if (fabs(b.cell.m[0][1] / edge) > 0.5 + 1e-9)
+                check_close(b.cell.m[0][1] / edge, 0.5, 1e-9, "tilt after a remap");
+        }
+    }
+}
+
 /* Two particles of one rigid body never interact; in open directions nobody has images. */
 static void bodies_and_open_sides(void)
 {
@@ -273,6 +293,7 @@ static const struct unit_test tests[] = {
     { "circular flows and flat cells are refused", circular_flow_is_refused },
     { "wrapping and remap change no physics", wrapping_changes_no_physics },
     { "contact history survives faces and remaps", history_survives_remap },
+    { "a tilt of half a cell is remapped once", half_a_cell_is_remapped_once },
     { "lost and coincident particles are named", lost_particles_are_named },
     { "bodies and open sides", bodies_and_open_sides },
     { NULL, NULL }

@@ -83,13 +83,13 @@ bool box_new(struct box *b, const mat3 *cell, const bool periodic[3], const mat3
     return true;
 }
 
-/* How often edge `a` must be taken off edge `c` to make the tilt of c along axis a at most half of a. */
+/* How often edge `a` must be taken off edge `c` to make the tilt of c along axis a at most half of a. Rounding must not flip a half to and fro. */
 static int excess(const struct box *b, int a, int c)
 {
     if (!b->tilts[a][c] || !b->periodic[c])
         return 0;
     const double tilt = b->cell.m[a][c] / b->cell.m[a][a];
-    return fabs(tilt) > 0.5 ? (int)lround(tilt) : 0;
+    return fabs(tilt) > 0.5 + 1e-9 ? (int)lround(tilt) : 0;
 }
 
 bool box_wants_remap(const struct box *b)

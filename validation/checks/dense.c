@@ -12,6 +12,7 @@
  * the case: the kinetic part, and the normal stress differences, which are compared in units of the shear stress.
  */
 #include "dense.h"
+#include "flow.h"
 #include "../packing.h"
 
 #include <math.h>
@@ -19,26 +20,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BINS = 12, COMPONENTS = 14 };
-enum { VISCOSITY, CONTACT, KINETIC, PRESSURE, N1, N2, DRAG, QUANTITIES };
-
-static const char *const quantity_name[QUANTITIES] = {
-    "relative viscosity", "contact viscosity", "kinetic viscosity", "pressure", "N1", "N2", "drag viscosity"
+static const char *const quantity_name[FLOW_QUANTITIES] = {
+    [VISCOSITY] = "relative viscosity", [CONTACT] = "contact viscosity", [KINETIC] = "kinetic viscosity", [PRESSURE] = "pressure",
+    [N1] = "N1", [N2] = "N2", [DRAG] = "drag viscosity"
 };
+static const int compared[] = { VISCOSITY, CONTACT, KINETIC, PRESSURE, N1, N2 };
+enum { COMPARED = sizeof compared / sizeof *compared };
 
-/* One run: averages over the steady window, and the contact viscosity in bins of strain over the whole run. */
-struct average { double mean[QUANTITIES], bin[BINS]; };
-
-bool dense_start(struct check_run *run, unsigned seed, struct dense_start *s)
+bool dense_start_in(struct check_run *run, const json_t *scene, unsigned seed, struct dense_start *s)
 {
     const json_t *par = run->gate_case->parameters;
-    json_t *shear = json_array_get(json_object_get(run->gate_case->scene, "shear"), 0);
-    const json_t *species = json_object_get(run->gate_case->scene, "species"), *counts = json_object_get(par, "counts");
+    json_t *shear = json_array_get(json_object_get(scene, "shear"), 0);
+    const json_t *species = json_object_get(scene, "species"), *counts = json_object_get(par, "counts");
     struct packing_species mix[8];
     const int kinds = (int)json_array_size(species);
     char why[WHY_LENGTH];
-    *s = (struct dense_start){ .scene = json_deep_copy(run->gate_case->scene), .phi = scene_number(par, "phi", 0.5),
-                               .viscosity = scene_number(run->gate_case->scene, "fluid.viscosity", 1),
+    *s = (struct dense_start){ .scene = json_deep_copy(scene), .phi = scene_number(par, "phi", 0.5),
+                               .viscosity = scene_number(scene, "fluid.viscosity", 1),
                                .rate = scene_number(shear, "rate", 1) };
     for (int k = 0; k < kinds && k < 8; k++) {
         mix[k].radius = scene_number(json_array_get(species, (size_t)k), "radius", 1);
@@ -55,6 +53,11 @@ bool dense_start(struct check_run *run, unsigned seed, struct dense_start *s)
     scene_set(s->scene, "box", json_pack("{s[fff] s[bbb]}", "lengths", s->edge, s->edge, s->edge, "periodic", 1, 1, 1));
     scene_set(s->scene, "start.file", json_string("states.csv"));
     return true;
+}
+
+bool dense_start(struct check_run *run, unsigned seed, struct dense_start *s)
+{
+    return dense_start_in(run, run->gate_case->scene, seed, s);
 }
 
 void dense_start_free(struct dense_start *s)
@@ -91,67 +94,17 @@ bool dense_ask_both(struct check_run *run, const char *name, const struct dense_
     return good;
 }
 
-/* Sum over the origins that matter here; column numbers are those of the list in read_average. */
-static bool read_average(struct check_run *run, const struct dense_start *s, const char *out, double discard, double strain,
-                         struct average *a)
+/* Mean over realisations and its standard error of plus[k] - minus[k] (`minus` may be null); offset: of the number in a flow_average. */
+static double mean_at(const struct flow_average *plus, const struct flow_average *minus, size_t offset, int count, double *standard_error)
 {
-    static const char *const columns = "step,time,contact_normal_xx,contact_normal_xy,contact_normal_yx,contact_normal_yy,"
-                                       "contact_normal_zz,kinetic_xx,kinetic_xy,kinetic_yx,kinetic_yy,kinetic_zz,drag_xy,drag_yx";
-    char path[PATH_LENGTH], why[WHY_LENGTH];
-    struct table t;
-    path_join(path, out, "stress.csv");
-    if (!table_read(path, columns, &t, why)) {
-        check_garbage(run, why);
-        return false;
-    }
-    const double unit = s->viscosity * s->rate, size = fabs(unit);
-    int rows = 0, in_bin[BINS] = { 0 };
-    memset(a, 0, sizeof *a);
-    for (size_t r = 0; r < t.rows; r++) {
-        double v[COMPONENTS];
-        for (size_t c = 0; c < COMPONENTS; c++)
-            v[c] = table_at(&t, r, c);
-        const double now = v[1] * fabs(s->rate), contact = (v[3] + v[4]) / 2 / unit, kinetic = (v[8] + v[9]) / 2 / unit;
-        const double xx = v[2] + v[7], yy = v[5] + v[10], zz = v[6] + v[11], drag = (v[12] + v[13]) / 2 / unit;
-        const int bin = (int)(now / strain * BINS);
-        if (bin >= 0 && bin < BINS) {
-            a->bin[bin] += contact;
-            in_bin[bin]++;
-        }
-        if (now <= discard)
-            continue;
-        const double sample[QUANTITIES] = { 1 + drag + contact + kinetic, contact, kinetic, -(xx + yy + zz) / 3 / size,
-                                            (xx - yy) / size, (yy - zz) / size, drag };
-        for (int q = 0; q < QUANTITIES; q++)
-            a->mean[q] += sample[q];
-        rows++;
-    }
-    table_free(&t);
-    for (int q = 0; q < QUANTITIES; q++)
-        a->mean[q] /= rows;
-    for (int b = 0; b < BINS; b++)
-        a->bin[b] = in_bin[b] ? a->bin[b] / in_bin[b] : NAN;
-    if (rows == 0)
-        check_garbage(run, "stress.csv ends before the flow is steady");
-    return rows > 0;
-}
-
-/* Mean over realisations and its standard error of value(k) = plus[k] - minus[k] (`minus` may be null). */
-static double mean_of(const struct average *plus, const struct average *minus, size_t offset, int count, double *standard_error)
-{
-    double sum = 0, squares = 0;
+    double value[count];
     for (int k = 0; k < count; k++)
-        sum += ((const double *)&plus[2 * k])[offset] - (minus ? ((const double *)&minus[2 * k])[offset] : 0);
-    for (int k = 0; k < count; k++) {
-        const double v = ((const double *)&plus[2 * k])[offset] - (minus ? ((const double *)&minus[2 * k])[offset] : 0);
-        squares += (v - sum / count) * (v - sum / count);
-    }
-    *standard_error = sqrt(squares / (count - 1) / count);
-    return sum / count;
+        value[k] = ((const double *)&plus[2 * k])[offset] - (minus ? ((const double *)&minus[2 * k])[offset] : 0);
+    return mean_of(value, count, standard_error);
 }
 
 /* Contact viscosity against strain, both codes, and the steady averages, with error bars from the realisations. */
-static void draw(struct check_run *run, struct result *r, const struct average *a, int count, double discard, double strain)
+static void draw(struct check_run *run, struct result *r, const struct flow_average *a, int count, double discard, double strain)
 {
     char path[PATH_LENGTH], command[PATH_LENGTH + 64];
     double error[2], value[2];
@@ -161,16 +114,16 @@ static void draw(struct check_run *run, struct result *r, const struct average *
         return;
     fprintf(f, "set terminal svg size 960,400 enhanced font 'sans,12'\nset output 'dense.svg'\nset multiplot layout 1,2\n"
                "$bins << end\n");
-    for (int b = 0; b < BINS; b++) {
+    for (int b = 0; b < FLOW_BINS; b++) {
         for (int code = 0; code < 2; code++)
-            value[code] = mean_of(a + code, NULL, QUANTITIES + (size_t)b, count, &error[code]);
-        fprintf(f, "%g %g %g %g %g\n", (b + 0.5) * strain / BINS, value[0], error[0], value[1], error[1]);
+            value[code] = mean_at(a + code, NULL, FLOW_QUANTITIES + (size_t)b, count, &error[code]);
+        fprintf(f, "%g %g %g %g %g\n", (b + 0.5) * strain / FLOW_BINS, value[0], error[0], value[1], error[1]);
     }
     fprintf(f, "end\n$steady << end\n");
-    for (int q = 0; q < DRAG; q++) {
+    for (int c = 0; c < COMPARED; c++) {
         for (int code = 0; code < 2; code++)
-            value[code] = mean_of(a + code, NULL, (size_t)q, count, &error[code]);
-        fprintf(f, "%d \"%s\" %g %g %g %g\n", q, quantity_name[q], value[0], error[0], value[1], error[1]);
+            value[code] = mean_at(a + code, NULL, (size_t)compared[c], count, &error[code]);
+        fprintf(f, "%d \"%s\" %g %g %g %g\n", c, quantity_name[compared[c]], value[0], error[0], value[1], error[1]);
     }
     fprintf(f, "end\nset xlabel 'strain'\nset ylabel 'contact viscosity / fluid viscosity'\nset yrange [0:*]\nset key bottom left\n"
                "set arrow from %g, graph 0 to %g, graph 1 nohead dashtype 2 lc 'gray'\n"
@@ -181,7 +134,7 @@ static void draw(struct check_run *run, struct result *r, const struct average *
                "set xtics rotate by -25\nset key top right\nset xzeroaxis\n"
                "plot $steady using 1:3:4:xtic(2) with yerrorbars pt 7 ps 0.6 lc 'black' title 'candidate', \\\n"
                "     $steady using ($1+0.15):5:6 with yerrorbars pt 6 ps 0.9 lc 'red' title 'LAMMPS'\n",
-            discard, discard, strain / BINS / 5, DRAG - 1);
+            discard, discard, strain / FLOW_BINS / 5, COMPARED - 1);
     fclose(f);
     snprintf(command, sizeof command, "cd '%s' && gnuplot dense.gnuplot 2>gnuplot.log", run->work);
     if (system(command) == 0)
@@ -202,14 +155,15 @@ static double margin_of(const struct check_run *run, int quantity, double refere
     return run->gate_case->tolerance * shear_stress;
 }
 
-static void judge(struct check_run *run, const struct dense_start *s, const struct average *a, int count)
+static void judge(struct check_run *run, const struct dense_start *s, const struct flow_average *a, int count)
 {
     double error, own_error, reference_error;
-    const double shear_stress = fabs(mean_of(a + 1, NULL, VISCOSITY, count, &error));
-    for (int q = 0; q < DRAG; q++) {
-        const double difference = mean_of(a, a + 1, (size_t)q, count, &error);
-        const double reference = mean_of(a + 1, NULL, (size_t)q, count, &reference_error);
-        const double own = mean_of(a, NULL, (size_t)q, count, &own_error), margin = margin_of(run, q, reference, shear_stress);
+    const double shear_stress = fabs(mean_at(a + 1, NULL, VISCOSITY, count, &error));
+    for (int c = 0; c < COMPARED; c++) {
+        const int q = compared[c];
+        const double difference = mean_at(a, a + 1, (size_t)q, count, &error);
+        const double reference = mean_at(a + 1, NULL, (size_t)q, count, &reference_error);
+        const double own = mean_at(a, NULL, (size_t)q, count, &own_error), margin = margin_of(run, q, reference, shear_stress);
         struct result *r = check_interval(run, MODEL, quantity_name[q], own, error, reference, margin,
                                           "%s is %.4g +- %.2g in the candidate and %.4g +- %.2g in LAMMPS, from the same %d starts; "
                                           "paired difference %.2g +- %.2g, margin %.2g",
@@ -218,7 +172,7 @@ static void judge(struct check_run *run, const struct dense_start *s, const stru
                      "%.2g +- %.2g, margin %.2g. In units of viscosity x rate.",
                      own, own_error, reference, reference_error, count, difference, error, margin);
     }
-    const double drag = mean_of(a, NULL, DRAG, count, &error), expected = 2.5 * s->phi;
+    const double drag = mean_at(a, NULL, DRAG, count, &error), expected = 2.5 * s->phi;
     check_error(run, MODEL, quantity_name[DRAG], drag, expected, fabs(drag / expected - 1), 1e-9,
                 "the one-body stresslets add %.9g to the relative viscosity; Einstein's (5/2) phi is %.9g", drag, expected);
 }
@@ -228,7 +182,7 @@ void dense_equivalence(struct check_run *run)
     const json_t *par = run->gate_case->parameters;
     const int count = (int)scene_number(par, "realisations", 8) * run->samples;
     const double discard = scene_number(par, "discard", 2), strain = scene_number(par, "strain", 12);
-    struct average *a = calloc(2 * (size_t)count, sizeof *a);   /* candidate and reference in turn */
+    struct flow_average *a = calloc(2 * (size_t)count, sizeof *a);   /* candidate and reference in turn */
     struct dense_start s = { 0 };
     bool good = a != NULL;
     for (int k = 0; good && k < count; k++) {
@@ -244,8 +198,9 @@ void dense_equivalence(struct check_run *run)
         scene_set(s.scene, "output.stress.every", json_integer((json_int_t)scene_number(par, "every", 20)));
         snprintf(name, sizeof name, "realisation-%d", k);
         good = dense_ask_both(run, name, &s, out);
+        const struct flow flow = { .viscosity = s.viscosity, .rate = s.rate, .discard = discard, .strain = strain };
         for (int code = 0; good && code < 2; code++)
-            good = read_average(run, &s, out[code], discard, strain, &a[2 * k + code]);
+            good = flow_read(run, out[code], "contact_normal,kinetic,drag", &flow, &a[2 * k + code]);
     }
     if (good) {
         judge(run, &s, a, count);

@@ -13,6 +13,8 @@ struct dense_start {
 
 /* The case's spheres at random without overlap, moving with the flow. Records a failure and returns false if there are none. */
 bool dense_start(struct check_run *run, unsigned seed, struct dense_start *s);
+/* The same spheres in another scene than the case's own. */
+bool dense_start_in(struct check_run *run, const json_t *scene, unsigned seed, struct dense_start *s);
 void dense_start_free(struct dense_start *s);
 
 /*
