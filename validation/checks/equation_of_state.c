@@ -12,9 +12,7 @@
  * correction; a realisation of N spheres has a pressure wrong by order 1/N.
  */
 #include "dense.h"
-#include "packing.h"
-#include "pair.h"
-#include "single.h"
+#include "rest.h"
 #include "statistics.h"
 
 #include <stdlib.h>
@@ -41,25 +39,6 @@ static double mean_pressure(struct check_run *run, const char *out, double disca
     return rows > 0.0 ? sum / rows : NAN;
 }
 
-static struct state_row *start_spheres(struct check_run *run, const struct model *m, int count, double edge, double kT, unsigned seed)
-{
-    const struct packing_species kind = { m->radius[0], count };
-    const struct free_sphere sphere = free_sphere(m);
-    struct state_row *row = calloc((size_t)count, sizeof *row);
-    char why[WHY_LENGTH] = "the gate is out of memory";
-    if (!row || !packing_make(&kind, 1, edge, 0.0, seed, row, why)) {
-        check_garbage(run, why);
-        free(row);
-        return NULL;
-    }
-    gsl_rng *random = pair_random(run);
-    gsl_rng_set(random, seed);
-    for (int i = 0; i < count; i++)
-        random_vector(random, sqrt(kT / sphere.mass), row[i].u);
-    gsl_rng_free(random);
-    return row;
-}
-
 void check_equation_of_state(struct check_run *run)
 {
     const json_t *parameters = run->gate_case->parameters;
@@ -70,32 +49,29 @@ void check_equation_of_state(struct check_run *run)
     int answered = 0;
     if (!model_read(run, run->gate_case->scene, &m) || realisations < 2 || realisations > 64)
         return;
-    const struct packing_species kind = { m.radius[0], count };
-    const double edge = packing_edge(&kind, 1, phi), kT = scene_number(run->gate_case->scene, "fluid.kT", NAN);
+    struct rest rest = { 0 };
+    double density = NAN, kT = NAN;
     for (int k = 0; k < realisations; k++) {
-        json_t *scene = json_deep_copy(run->gate_case->scene);
-        const unsigned seed = (run->seed + (unsigned)k) & 0xffffffffu;
-        struct state_row *row = start_spheres(run, &m, count, edge, kT, seed);
         char name[32], out[PATH_LENGTH];
+        if (!rest_start(run, run->gate_case->scene, parameters, phi, (run->seed + (unsigned)k) & 0xffffffffu, &rest))
+            return;
+        density = (double)rest.count / rest.volume;
+        kT = rest.kT;
         snprintf(name, sizeof name, "realisation-%d", k);
         check_progress(run, "realisation %d of %d", k + 1, realisations);
-        scene_set(scene, "seed", json_integer(seed));
-        scene_set(scene, "box.lengths", json_pack("[fff]", edge, edge, edge));
-        scene_set(scene, "start.file", json_string("states.csv"));
-        scene_set(scene, "run.steps", json_integer((json_int_t)steps));
-        scene_set(scene, "output.stress.every", json_integer((json_int_t)scene_number(parameters, "every", 1)));
-        const struct question q = { .protocol = "run", .scene = scene, .state = row, .states = (size_t)count };
-        if (row && check_ask(run, name, &q, out)) {
+        scene_set(rest.scene, "run.steps", json_integer((json_int_t)steps));
+        scene_set(rest.scene, "output.stress.every", json_integer((json_int_t)scene_number(parameters, "every", 1)));
+        const struct question q = { .protocol = "run", .scene = rest.scene, .state = rest.row, .states = rest.count };
+        if (check_ask(run, name, &q, out)) {
             pressure[k] = mean_pressure(run, out, scene_number(parameters, "discard", 0));
             answered += isfinite(pressure[k]);
         }
-        free(row);
-        json_decref(scene);
+        rest_free(&rest);
         if (answered <= k)
             return;
     }
     double mean;
-    const double n = count / gsl_pow_3(edge), sigma = theory_thermal_diameter(m.radius[0], m.contact.normal_stiffness, kT);
+    const double n = density, sigma = theory_thermal_diameter(m.radius[0], m.contact.normal_stiffness, kT);
     const struct interval one = statistics_mean_interval(pressure, (size_t)realisations, 0.682689, &mean);   /* one standard error */
     const double expected = theory_carnahan_starling(M_PI / 6.0 * n * gsl_pow_3(sigma)) - 1.0, measured = mean / (n * kT);
     struct result *r = check_interval(run, MODEL, "contact pressure", measured, 0.5 * (one.high - one.low) / (n * kT), expected,
