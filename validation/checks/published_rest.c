@@ -305,5 +305,6 @@ void check_published_split(struct check_run *run)
 const struct check published_rest_checks[] = {
     { "published-green-kubo", check_published_green_kubo },
     { "published-split", check_published_split },
+    { "published-diffusion", check_published_diffusion },
     { NULL, NULL },
 };

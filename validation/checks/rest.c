@@ -58,7 +58,7 @@ void rest_free(struct rest *r)
 }
 
 /* The last state of the track as rows; spheres that do not turn have no spin. */
-static void carry_on(struct rest *r, const struct track *t)
+void rest_carry_on(struct rest *r, const struct track *t)
 {
     for (size_t i = 0; i < r->count; i++) {
         const struct track_point *p = track_at(t, t->steps - 1, i);
@@ -76,12 +76,24 @@ bool rest_settle(struct check_run *run, const char *name, struct rest *r, int st
     json_t *scene = json_deep_copy(r->scene);
     const bool good = track_ask(run, name, scene, r->row, r->count, &steps, 1, &t);
     if (good) {
-        carry_on(r, &t);
+        rest_carry_on(r, &t);
         track_free(&t);
     }
     json_decref(scene);
     scene_set(r->scene, "seed", json_integer((json_integer_value(scene_get(r->scene, "seed")) + 0x40000000) & 0xffffffff));   /* not the same noise again */
     return good;
+}
+
+bool rest_track(struct check_run *run, const char *name, struct rest *r, const int *at, size_t steps, char out[PATH_LENGTH], struct track *t)
+{
+    char path[PATH_LENGTH];
+    track_want(r->scene, at, steps);
+    const struct question q = { .protocol = "run", .scene = r->scene, .state = r->row, .states = r->count };
+    if (!check_ask(run, name, &q, out) || !track_load(run, out, at, steps, r->count, t))
+        return false;
+    path_join(path, out, "trajectory.csv");
+    remove(path);                       /* tens of megabytes, read once */
+    return true;
 }
 
 /* Contact and lubrication pressure, in n kT. */
@@ -160,7 +172,7 @@ static bool measure(struct check_run *run, const struct rest_point *p, json_t *s
 {
     const json_t *parameters = run->gate_case->parameters, *correlate = json_object_get(p->json, "correlate");
     const int steps = (int)scene_number(p->json, "steps", 0), settle = (int)scene_number(p->json, "settle", 0), frames = (int)scene_number(p->json, "frames", 1);
-    char name[64], out[PATH_LENGTH], path[PATH_LENGTH];
+    char name[64], out[PATH_LENGTH];
     struct rest r;
     struct model m;
     struct track t;
@@ -171,18 +183,14 @@ static bool measure(struct check_run *run, const struct rest_point *p, json_t *s
         at[f] = (int)((double)steps * (f + 1) / frames);
     snprintf(name, sizeof name, "%s-settle-%d", p->label, k);
     bool good = settle <= 0 || rest_settle(run, name, &r, settle);
-    track_want(r.scene, at, (size_t)frames);
     scene_set(r.scene, "output.stress.every", json_integer((json_int_t)scene_number(p->json, "every", 10)));
     if (correlate)
         scene_set(r.scene, "output.green_kubo", json_deep_copy(correlate));
     snprintf(name, sizeof name, "%s-%d", p->label, k);
-    const struct question q = { .protocol = "run", .scene = r.scene, .state = r.row, .states = r.count };
-    good = good && check_ask(run, name, &q, out) && read_pressures(run, out, &r, s->value) && (!correlate || read_correlation(run, out, s));
-    if (good && (good = track_load(run, out, at, (size_t)frames, r.count, &t))) {
+    if (good && (good = rest_track(run, name, &r, at, (size_t)frames, out, &t))) {
         read_frames(&t, &r, &m, s->value);
         track_free(&t);
-        path_join(path, out, "trajectory.csv");
-        remove(path);                   /* tens of megabytes, read once */
+        good = read_pressures(run, out, &r, s->value) && (!correlate || read_correlation(run, out, s));
     }
     free(at);
     rest_free(&r);
@@ -198,7 +206,7 @@ static json_t *scene_of(const struct check_run *run, const json_t *point)
     return scene;
 }
 
-static FILE *table_in(const struct check_run *run, const char *name, const char *header)
+FILE *rest_table(const struct check_run *run, const char *name, const char *header)
 {
     char path[PATH_LENGTH];
     path_join(path, run->work, name);
@@ -232,7 +240,7 @@ struct rest_point *rest_measure(struct check_run *run, size_t *points)
     bool good = point != NULL;
     for (int v = 0; v < REST_VALUES; v++)
         snprintf(header + strlen(header), sizeof header - strlen(header), ",%s", rest_value_name[v]);
-    FILE *values = table_in(run, "points.csv", header), *correlation = table_in(run, "correlation.csv", "point,phi,realisation,lag,correlation");
+    FILE *values = rest_table(run, "points.csv", header), *correlation = rest_table(run, "correlation.csv", "point,phi,realisation,lag,correlation");
     *points = json_array_size(list) < REST_POINTS ? json_array_size(list) : REST_POINTS;
     for (size_t i = 0; i < *points && good; i++) {
         struct rest_point *p = &point[i];

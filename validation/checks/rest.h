@@ -7,6 +7,8 @@
 
 #include "single.h"
 
+#include <stdio.h>
+
 struct rest {
     json_t *scene;                      /* ready to run but for its length and its output */
     struct state_row *row;              /* start */
@@ -19,9 +21,13 @@ struct rest {
  * spheres. False: recorded already, and nothing is left to free.
  */
 bool rest_start(struct check_run *run, const json_t *scene, const json_t *parameters, double phi, unsigned seed, struct rest *r);
+/* Run to at[steps - 1] with what the scene's output asks for besides, and read the states at the steps of `at`. */
+bool rest_track(struct check_run *run, const char *name, struct rest *r, const int *at, size_t steps, char out[PATH_LENGTH], struct track *t);
 /* Run for `steps` and go on from there: `row` becomes the last state. */
 bool rest_settle(struct check_run *run, const char *name, struct rest *r, int steps);
+void rest_carry_on(struct rest *r, const struct track *t);             /* the same from a track that is there already */
 void rest_free(struct rest *r);
+FILE *rest_table(const struct check_run *run, const char *name, const char *header);      /* in the work folder; null if it cannot be */
 
 /* Means over one realisation: pressures in n kT, temperatures in kT, and the Brownian stress correlation at rest. */
 enum { REST_CONTACT, REST_LUBRICATION, REST_TEMPERATURE, REST_SPIN_TEMPERATURE, REST_WIDE, REST_STRUCTURAL, REST_VARIANCE, REST_VALUES };

@@ -5,7 +5,8 @@
  *
  * f a_i the width of the shell and d the depth to which kT presses two spheres into each other, sqrt(pi kT/(2 k_n)): the shell
  * of the source has f = 0.05, d = 0, which counts a soft contact's overlaps but not their room. The limit f -> 0 for equal hard spheres is the
- * virial: -tr/3 = (2 pi/3) n^2 kT (2a)^3 g(2a), which Carnahan & Starling give (tests/theory_test.c). All pairs, nearest images in a cube.
+ * virial: -tr/3 = (2 pi/3) n^2 kT (2a)^3 g(2a), the pressure beyond n kT. All pairs, nearest images in a cube. Second origin
+ * (tests/theory_pair_test.c): points placed at random, whose shells fill by their density.
  */
 #include "theory.h"
 
