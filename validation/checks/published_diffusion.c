@@ -128,10 +128,12 @@ static bool measure(struct check_run *run, const json_t *point, struct diffusion
     d->mass = sphere.mass;
     d->unit_time = gsl_pow_2(m.radius[0]) * sphere.friction / d->kT;
     const double wanted = scene_number(parameters, "step", NAN) * m.radius[0] / sqrt(d->kT / d->mass);
-    const int per_state = (int)ceil(d->unit_time / PER_TIME / wanted), settle = (int)(per_state * PER_TIME * scene_number(parameters, "settle", 0));
+    const int per_state = (int)ceil(d->unit_time / PER_TIME / wanted);
+    const int settle = (int)(per_state * PER_TIME * scene_number(parameters, "settle", 0));
     json_t *scene = json_deep_copy(run->gate_case->scene);
     scene_set(scene, "fluid.kT", json_real(d->kT));
-    scene_set(scene, "forces.contact.normal_stiffness", json_real(scene_number(parameters, "hardness", NAN) * d->kT / gsl_pow_2(m.radius[0])));
+    const double stiffness = scene_number(parameters, "hardness", NAN) * d->kT / gsl_pow_2(m.radius[0]);
+    scene_set(scene, "forces.contact.normal_stiffness", json_real(stiffness));
     scene_set(scene, "dynamics.split.dt", json_real(d->unit_time / PER_TIME / per_state));
     int *at = calloc((size_t)length, sizeof *at);
     bool good = at != NULL;
@@ -163,9 +165,11 @@ static bool measure(struct check_run *run, const json_t *point, struct diffusion
 
 static void write_point(FILE *values, FILE *curves, const struct diffusion *d)
 {
-    const struct estimate middle = of_blocks(d->block[0], d->blocks[0]), far = of_blocks(d->block[1], d->blocks[1]), hot = of_blocks(d->block[2], d->blocks[2]);
+    const struct estimate middle = of_blocks(d->block[0], d->blocks[0]), far = of_blocks(d->block[1], d->blocks[1]);
+    const struct estimate hot = of_blocks(d->block[2], d->blocks[2]);
     if (values) {
-        fprintf(values, "%g,%g,%.5g,%.2g,%.5g,%.2g,%.5g,%.2g", d->phi, d->ratio, middle.mean, middle.error, far.mean, far.error, hot.mean, hot.error);
+        fprintf(values, "%g,%g,%.5g,%.2g,%.5g,%.2g,%.5g,%.2g", d->phi, d->ratio, middle.mean, middle.error, far.mean, far.error, hot.mean,
+                hot.error);
         for (int k = 0; k < SHORT; k++)
             fprintf(values, ",%.5g", d->ballistic[k] / d->squares * hot.mean);
         fputc('\n', values);
@@ -176,7 +180,8 @@ static void write_point(FILE *values, FILE *curves, const struct diffusion *d)
                 d->ballistic[k] / d->squares * hot.mean * d->kT / d->mass * gsl_pow_2(d->at_time[k] * d->inertia_time));
     for (int lag = 1; curves && lag <= 4 * PER_TIME; lag++)
         if (d->origins[lag] > 0.0)
-            fprintf(curves, "%g,%g,%.5g,%.5g,%.5g\n", d->phi, d->ratio, lag * d->unit_time / PER_TIME / d->inertia_time, (double)lag / PER_TIME, d->msd[lag] / d->origins[lag]);
+            fprintf(curves, "%g,%g,%.5g,%.5g,%.5g\n", d->phi, d->ratio, lag * d->unit_time / PER_TIME / d->inertia_time,
+                    (double)lag / PER_TIME, d->msd[lag] / d->origins[lag]);
     if (curves)
         fflush(curves);
 }
@@ -187,7 +192,8 @@ static void judge_ballistic(struct check_run *run, const struct diffusion *d)
     char text[128];
     snprintf(text, sizeof text, "phi %g, tau_I/tau_B %g: ballistic part", d->phi, d->ratio);
     const double measured = d->ballistic[0] / d->squares * hot.mean;
-    struct result *r = check_interval(run, MODEL, text, measured, hot.error, 1.0, scene_number(run->gate_case->parameters, "ballistic_margin", 0.01),
+    const double margin = scene_number(run->gate_case->parameters, "ballistic_margin", 0.01);
+    struct result *r = check_interval(run, MODEL, text, measured, hot.error, 1.0, margin,
                                       "at t = %.0e tau_I the mean square displacement is %.4g of (kT/m) t^2", d->at_time[0], measured);
     result_notes(r, "<dx^2>/((kT/m) t^2) at t/tau_I = %g, %g, %g: %.4f, %.4f, %.4f; kinetic temperature %.4f +- %.4f kT", d->at_time[0], d->at_time[1],
                  d->at_time[2], measured, d->ballistic[1] / d->squares * hot.mean, d->ballistic[2] / d->squares * hot.mean, hot.mean, hot.error);

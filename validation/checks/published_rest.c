@@ -50,6 +50,12 @@ static struct running running_integral(const struct rest_point *p, int without)
 
 struct range { const struct running *y; size_t lags; };
 
+/* Share of the range that lag l stands for: lags are dense at first and sparse later, the fit is to the curve over s. */
+static double share(const struct range *r, size_t l)
+{
+    return 0.5 * (r->y->lag[l + 1 < r->lags ? l + 1 : l] - r->y->lag[l - 1]) / r->y->lag[r->lags - 1];
+}
+
 /* The best eta for this tau is linear; returns the mean square of what is left. */
 static double left_over(double log_tau, void *in, double *eta)
 {
@@ -57,14 +63,14 @@ static double left_over(double log_tau, void *in, double *eta)
     double fy = 0.0, ff = 0.0, square = 0.0;
     for (size_t l = 1; l < r->lags; l++) {
         const double f = -expm1(-r->y->lag[l] / exp(log_tau));
-        fy += f * r->y->eta[l];
-        ff += f * f;
+        fy += share(r, l) * f * r->y->eta[l];
+        ff += share(r, l) * f * f;
     }
     for (size_t l = 1; l < r->lags; l++)
-        square += gsl_pow_2(r->y->eta[l] + fy / ff * expm1(-r->y->lag[l] / exp(log_tau)));
+        square += share(r, l) * gsl_pow_2(r->y->eta[l] + fy / ff * expm1(-r->y->lag[l] / exp(log_tau)));
     if (eta)
         *eta = fy / ff;
-    return square / (double)(r->lags - 1);
+    return square;
 }
 
 static double objective(double log_tau, void *in)
@@ -168,8 +174,8 @@ static void judge_variance(struct check_run *run, const struct rest_point *p)
         mean += (ratio[k] = p->sample[k].correlation[0] / p->sample[k].value[REST_VARIANCE]) / p->count;
     for (int k = 0; k < p->count; k++)
         squares += gsl_pow_2(ratio[k] - mean);
-    check_interval(run, MODEL, said(text, p, "Brownian stress squared, as observed over that of the states"), mean, sqrt(squares / (p->count - 1) / p->count), 1.0,
-                   scene_number(run->gate_case->parameters, "variance_margin", 0.1),
+    check_interval(run, MODEL, said(text, p, "Brownian stress squared, as observed over that of the states"), mean,
+                   sqrt(squares / (p->count - 1) / p->count), 1.0, scene_number(run->gate_case->parameters, "variance_margin", 0.1),
                    "the observed correlation at lag 0 is %.3g times the mean square of the structural stress of the same run's states", mean);
 }
 
@@ -182,14 +188,15 @@ static void judge_pressures(struct check_run *run, const struct rest_point *p)
     for (int k = 0; k < p->count; k++)
         squares += gsl_pow_2(ratio[k] - mean);
     const double contact = rest_mean(p, REST_CONTACT, &contact_error), structural = rest_mean(p, REST_STRUCTURAL, &structural_error);
-    struct result *r = check_interval(run, MODEL, said(text, p, "structural over contact pressure"), mean, sqrt(squares / (p->count - 1) / p->count), 1.0,
-                                      scene_number(run->gate_case->parameters, "pressure_margin", 0.1),
-                                      "structural Brownian pressure %.4g n kT, contact pressure %.4g n kT: they should be one number at rest", structural, contact);
+    struct result *r = check_interval(run, MODEL, said(text, p, "structural over contact pressure"), mean,
+                                      sqrt(squares / (p->count - 1) / p->count), 1.0, scene_number(run->gate_case->parameters, "pressure_margin", 0.1),
+                                      "structural Brownian pressure %.4g n kT, contact pressure %.4g n kT: they should be one number at rest",
+                                      structural, contact);
     double wide_error, hot_error, spin_error, lubrication_error;
     const double wide = rest_mean(p, REST_WIDE, &wide_error), hot = rest_mean(p, REST_TEMPERATURE, &hot_error);
     const double spin = rest_mean(p, REST_SPIN_TEMPERATURE, &spin_error), lubrication = rest_mean(p, REST_LUBRICATION, &lubrication_error);
-    result_notes(r, "contact %.4g +- %.2g, structural %.4g +- %.2g (shell 0.05 a: %.4g +- %.2g), lubrication %.3g +- %.2g, all in n kT; temperatures "
-                 "%.4f +- %.4f, spin %.4f +- %.4f kT", contact, contact_error, structural, structural_error, wide, wide_error, lubrication,
+    result_notes(r, "contact %.4g +- %.2g, structural %.4g +- %.2g (shell 0.05 a: %.4g +- %.2g), lubrication %.3g +- %.2g, all in n kT; "
+                 "temperatures %.4f +- %.4f, spin %.4f +- %.4f kT", contact, contact_error, structural, structural_error, wide, wide_error, lubrication,
                  lubrication_error, hot, hot_error, spin, spin_error);
 }
 
@@ -198,10 +205,11 @@ static void judge_fit(struct check_run *run, const struct rest_point *p, const s
     char text[128];
     struct result *r = check_error(run, MODEL, said(text, p, "eta_GK(s) is an exponential approach"), g->fit.eta, g->plateau, g->fit.residual,
                                    run->gate_case->tolerance,
-                                   "the running viscosity differs from eta (1 - exp(-s/tau)) by %.2g of eta (root mean square up to s = %.3g); best eta %.3g +- "
-                                   "%.2g fluid viscosities, tau %.3g +- %.2g", g->fit.residual, g->longest, g->fit.eta, g->eta_error, g->fit.tau, g->tau_error);
-    result_notes(r, "eta %.4g +- %.2g and tau %.4g +- %.2g by the fit, residual %.3g of eta; %.4g +- %.2g at the first zero of the correlation, s = %.3g",
-                 g->fit.eta, g->eta_error, g->fit.tau, g->tau_error, g->fit.residual, g->plateau, g->plateau_error, g->longest);
+                                   "the running viscosity differs from eta (1 - exp(-s/tau)) by %.2g of eta (root mean square up to s = %.3g); "
+                                   "best eta %.3g +- %.2g fluid viscosities, tau %.3g +- %.2g", g->fit.residual, g->longest, g->fit.eta, g->eta_error,
+                                   g->fit.tau, g->tau_error);
+    result_notes(r, "eta %.4g +- %.2g and tau %.4g +- %.2g by the fit, residual %.3g of eta; %.4g +- %.2g at the first zero of the correlation, "
+                 "s = %.3g", g->fit.eta, g->eta_error, g->fit.tau, g->tau_error, g->fit.residual, g->plateau, g->plateau_error, g->longest);
 }
 
 static void judge_growth(struct check_run *run, const struct rest_point *p, const struct green_kubo *g, size_t points)
@@ -227,12 +235,12 @@ static void judge_friction(struct check_run *run, const struct rest_point *p, co
         return;
     double error[2];
     const double with = rest_mean(&p[a], REST_CONTACT, &error[0]), without = rest_mean(&p[b], REST_CONTACT, &error[1]);
-    check_interval(run, MODEL, "contact pressure with friction over that without", with / without, with / without * hypot(error[0] / with, error[1] / without), 1.0,
-                   margin, "contact pressure at rest is %.4g n kT with friction, %.4g without", with, without);
-    const double eta = g[a].plateau / g[b].plateau;
-    check_interval(run, MODEL, "Green-Kubo viscosity with friction over that without", eta, eta * hypot(g[a].plateau_error / g[a].plateau, g[b].plateau_error / g[b].plateau),
-                   1.0, margin, "Brownian viscosity at rest is %.4g +- %.2g with friction, %.4g +- %.2g without", g[a].plateau, g[a].plateau_error, g[b].plateau,
-                   g[b].plateau_error);
+    check_interval(run, MODEL, "contact pressure with friction over that without", with / without,
+                   with / without * hypot(error[0] / with, error[1] / without), 1.0, margin, "contact pressure at rest is %.4g n kT with friction, %.4g without", with, without);
+    const double eta = g[a].plateau / g[b].plateau, spread = hypot(g[a].plateau_error / g[a].plateau, g[b].plateau_error / g[b].plateau);
+    check_interval(run, MODEL, "Green-Kubo viscosity with friction over that without", eta, eta * spread, 1.0, margin,
+                   "Brownian viscosity at rest is %.4g +- %.2g with friction, %.4g +- %.2g without", g[a].plateau, g[a].plateau_error,
+                   g[b].plateau, g[b].plateau_error);
 }
 
 void check_published_green_kubo(struct check_run *run)
@@ -290,8 +298,8 @@ void check_published_split(struct check_run *run)
         error[2] = sqrt(squares / (p[i].count - 1) / p[i].count);
         struct result *r = check_interval(run, MODEL, said(text, &p[i], "contact pressure"), contact, error[0], expected * share, margin * expected,
                                           "contact pressure %.4g n kT; Carnahan and Starling times 1 - eps/2 give %.4g", contact, expected * share);
-        result_notes(r, "contact %.4g +- %.2g (predicted %.4g), lubrication %.3g +- %.2g, sum %.4g +- %.2g, in n kT", contact, error[0], expected * share,
-                     lubrication, error[1], mean, error[2]);
+        result_notes(r, "contact %.4g +- %.2g (predicted %.4g), lubrication %.3g +- %.2g, sum %.4g +- %.2g, in n kT", contact, error[0],
+                     expected * share, lubrication, error[1], mean, error[2]);
         check_interval(run, MODEL, said(text, &p[i], "contact and lubrication pressure together"), mean, error[2], expected, 2.0 * margin * expected,
                        "contact and lubrication pressure add up to %.4g n kT; Carnahan and Starling give %.4g", mean, expected);
     }

@@ -80,7 +80,8 @@ bool rest_settle(struct check_run *run, const char *name, struct rest *r, int st
         track_free(&t);
     }
     json_decref(scene);
-    scene_set(r->scene, "seed", json_integer((json_integer_value(scene_get(r->scene, "seed")) + 0x40000000) & 0xffffffff));   /* not the same noise again */
+    const json_int_t seed = json_integer_value(scene_get(r->scene, "seed"));
+    scene_set(r->scene, "seed", json_integer((seed + 0x40000000) & 0xffffffff));        /* not the same noise again */
     return good;
 }
 
@@ -102,7 +103,8 @@ static bool read_pressures(struct check_run *run, const char *out, const struct 
     char path[PATH_LENGTH], why[WHY_LENGTH];
     struct table t;
     path_join(path, out, "stress.csv");
-    if (!table_read(path, "step,contact_normal_xx,contact_normal_yy,contact_normal_zz,lubrication_xx?,lubrication_yy?,lubrication_zz?", &t, why)) {
+    static const char *const columns = "step,contact_normal_xx,contact_normal_yy,contact_normal_zz,lubrication_xx?,lubrication_yy?,lubrication_zz?";
+    if (!table_read(path, columns, &t, why)) {
         check_garbage(run, why);
         return false;
     }
@@ -123,7 +125,8 @@ static bool read_pressures(struct check_run *run, const char *out, const struct 
 static void read_frames(const struct track *t, const struct rest *r, const struct model *m, double value[REST_VALUES])
 {
     const double shell[2] = { 0.05, 0.02 }, depth = sqrt(M_PI * r->kT / (2.0 * m->contact.normal_stiffness));
-    double (*x)[3] = malloc(r->count * sizeof *x), *radius = malloc(r->count * sizeof *radius), pressure[2] = { 0 }, square = 0.0, hot[2] = { 0 };
+    double (*x)[3] = malloc(r->count * sizeof *x), *radius = malloc(r->count * sizeof *radius);
+    double pressure[2] = { 0 }, square = 0.0, hot[2] = { 0 };
     for (size_t s = 0; s < t->steps; s++) {
         for (size_t i = 0; i < r->count; i++) {
             const struct track_point *p = track_at(t, s, i);
@@ -298,10 +301,11 @@ double rest_mean(const struct rest_point *p, int value, double *standard_error)
     return sum / p->count;
 }
 
-struct result *rest_exceeds(struct check_run *run, const char *what, double measured, double standard_error, double bound, const char *sentence)
+struct result *rest_exceeds(struct check_run *run, const char *what, double measured, double standard_error, double bound,
+                            const char *sentence)
 {
-    struct result *r = check_error(run, MODEL, what, measured, bound, bound - (measured - 4.0 * standard_error), 0.0, "%s: %.4g +- %.2g, bound %.4g", sentence,
-                                   measured, standard_error, bound);
+    struct result *r = check_error(run, MODEL, what, measured, bound, bound - (measured - 4.0 * standard_error), 0.0,
+                                   "%s: %.4g +- %.2g, bound %.4g", sentence, measured, standard_error, bound);
     if (r->verdict == VERDICT_FAIL && measured + 4.0 * standard_error > bound)
         r->verdict = VERDICT_INCONCLUSIVE;
     return r;

@@ -42,7 +42,13 @@ struct rest_sample {
  * One point of a figure. `json`: `label`, `phi`, `steps`, `settle` (steps), `realisations`, `every` (steps between stresses),
  * `frames` (states looked at), optionally `correlate` { `every`, `levels` } and `set`: changes to the scene by path.
  */
-struct rest_point { const json_t *json; const char *label; double phi, density, kT, viscosity, volume, stiffness; int count; struct rest_sample *sample; };
+struct rest_point {
+    const json_t *json;
+    const char *label;
+    double phi, density /* number */, kT, viscosity, volume, stiffness;
+    int count;                          /* of realisations */
+    struct rest_sample *sample;
+};
 
 /* Measure all points of the case, writing points.csv and correlation.csv into the work folder as they come. Null: recorded. */
 struct rest_point *rest_measure(struct check_run *run, size_t *points);
@@ -51,6 +57,7 @@ void rest_points_free(struct rest_point *point, size_t points);
 double rest_mean(const struct rest_point *p, int value, double *standard_error);
 
 /* One-sided: passes if measured - 4 standard errors lies above the bound, fails if measured + 4 lies below, else inconclusive. */
-struct result *rest_exceeds(struct check_run *run, const char *what, double measured, double standard_error, double bound, const char *sentence);
+struct result *rest_exceeds(struct check_run *run, const char *what, double measured, double standard_error, double bound,
+                            const char *sentence);
 
 #endif

@@ -8,7 +8,8 @@
  *
  * The gate draws the starting velocities from the Maxwell distribution itself. All spheres are in one small box and pass through each
  * other and through its faces: 3 N independent realisations of one component, so that the sum of squares over them is
- * chi-squared. Where the scene has a contact they start apart, in a cube: a dilute suspension, in which the closed form is meant to hold (Li 2026, fig 4.2a). Explicit steps make an error: velocity Verlet with the drag of the half-step velocity (LAMMPS) starts with the
+ * chi-squared. Where the scene has a contact they start apart, in a cube: a dilute suspension, to which the closed form is applied
+ * by Li (2026), fig 4.2a. Explicit steps make an error: velocity Verlet with the drag of the half-step velocity (LAMMPS) starts with the
  * ballistic part wrong by eps/2, eps = dt/tau, and keeps D and the full-step temperature exact. The allowance is eps, for any
  * reasonable first-order scheme, and p-values are for the band 1 +- eps.
  */
@@ -235,7 +236,8 @@ static void judge_temperature_of(struct check_run *run, const struct model *m, c
     }
     struct state_row *start = calloc(count, sizeof *start);
     char why[WHY_LENGTH] = "the gate is out of memory";
-    if (!start || (m->has_contact && !packing_make(&(struct packing_species){ m->radius[0], (int)count }, 1, m->cell[0][0], 0.0, run->seed + which, start, why))) {
+    const struct packing_species kind = { m->radius[0], (int)count };
+    if (!start || (m->has_contact && !packing_make(&kind, 1, m->cell[0][0], 0.0, run->seed + which, start, why))) {
         check_garbage(run, why);
         free(start);
         json_decref(scene);
