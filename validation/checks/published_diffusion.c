@@ -237,7 +237,8 @@ static void judge_collapse(struct check_run *run, const struct diffusion *d, siz
         const double error = hypot(a.error / a.mean, b.error / b.mean), w = 1.0 / gsl_pow_2(error);
         sum += w * log(a.mean / b.mean);
         weight += w;
-        snprintf(notes + strlen(notes), sizeof notes - strlen(notes), " %g: %.4f +- %.4f and %.4f +- %.4f;", d[k].phi, a.mean, a.error, b.mean, b.error);
+        const size_t used = strlen(notes);
+        snprintf(notes + used, sizeof notes - used, " %g: %.4f +- %.4f and %.4f +- %.4f;", d[k].phi, a.mean, a.error, b.mean, b.error);
     }
     if (!(weight > 0.0))
         return;
@@ -252,7 +253,8 @@ void check_published_diffusion(struct check_run *run)
     const json_t *list = json_object_get(run->gate_case->parameters, "points");
     const size_t points = json_array_size(list) < POINTS ? json_array_size(list) : POINTS;
     struct diffusion *d = calloc(POINTS, sizeof *d);
-    FILE *values = rest_table(run, "diffusion.csv", "phi,tau_I/tau_B,D_middle/D0,error,D_long/D0,error_long,T/kT,error_T,ballistic_1e-5,ballistic_1e-4,ballistic_1e-3");
+    FILE *values = rest_table(run, "diffusion.csv", "phi,tau_I/tau_B,D_middle/D0,error,D_long/D0,error_long,T/kT,error_T,"
+                                                    "ballistic_1e-5,ballistic_1e-4,ballistic_1e-3");
     FILE *curves = rest_table(run, "msd.csv", "phi,tau_I/tau_B,t/tau_I,t*D0/a^2,msd/a^2");
     bool good = d != NULL;
     for (size_t k = 0; k < points && good; k++)

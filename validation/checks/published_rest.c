@@ -236,7 +236,8 @@ static void judge_friction(struct check_run *run, const struct rest_point *p, co
     double error[2];
     const double with = rest_mean(&p[a], REST_CONTACT, &error[0]), without = rest_mean(&p[b], REST_CONTACT, &error[1]);
     check_interval(run, MODEL, "contact pressure with friction over that without", with / without,
-                   with / without * hypot(error[0] / with, error[1] / without), 1.0, margin, "contact pressure at rest is %.4g n kT with friction, %.4g without", with, without);
+                   with / without * hypot(error[0] / with, error[1] / without), 1.0, margin,
+                   "contact pressure at rest is %.4g n kT with friction, %.4g without", with, without);
     const double eta = g[a].plateau / g[b].plateau, spread = hypot(g[a].plateau_error / g[a].plateau, g[b].plateau_error / g[b].plateau);
     check_interval(run, MODEL, "Green-Kubo viscosity with friction over that without", eta, eta * spread, 1.0, margin,
                    "Brownian viscosity at rest is %.4g +- %.2g with friction, %.4g +- %.2g without", g[a].plateau, g[a].plateau_error,

@@ -174,7 +174,8 @@ static bool read_correlation(struct check_run *run, const char *out, struct rest
 static bool measure(struct check_run *run, const struct rest_point *p, json_t *scene, int k, struct rest_sample *s)
 {
     const json_t *parameters = run->gate_case->parameters, *correlate = json_object_get(p->json, "correlate");
-    const int steps = (int)scene_number(p->json, "steps", 0), settle = (int)scene_number(p->json, "settle", 0), frames = (int)scene_number(p->json, "frames", 1);
+    const int steps = (int)scene_number(p->json, "steps", 0), settle = (int)scene_number(p->json, "settle", 0);
+    const int frames = (int)scene_number(p->json, "frames", 1);
     char name[64], out[PATH_LENGTH];
     struct rest r;
     struct model m;
