@@ -9,7 +9,11 @@
  * at lag 0 is held against Sigma_xy^2 taken from the candidate's states (theory/structural_stress.c). The gate integrates by trapezoids,
  * fits by least squares up to the first zero of the pooled correlation, and takes errors from the jackknife over realisations.
  * From the same runs: the structural pressure, extrapolated to a shell of no width, equals the contact pressure, as fig 4.5 has it of the
- * shear stresses at Pe < 1; and friction between the spheres changes neither viscosity nor pressure, as fig 4.9 has it at low Pe.
+ * shear stresses at Pe < 1.
+ *
+ * "published-friction": friction between the spheres changes neither viscosity nor pressure at rest, the limit of the low Pe of fig 4.9.
+ * A frictional contact dissipates and has no noise of its own, so it could cool what it touches: temperatures are compared too. The
+ * viscosity is compared up to a lag at which it is known to a few per cent; the rest of the integral is in the notes.
  *
  * "published-split": the parts of the pressure at rest against the time step. Explicit velocity Verlet finds spheres in contact too rarely
  * by 1 - eps/2, eps = X_A dt/m_eff at the inner gap, and books the rest of the pressure as lubrication; the sum stays. Sources: the spurious
@@ -103,7 +107,7 @@ static struct fit fit_exponential(const struct running *y, size_t lags)
     return out;
 }
 
-/* Up to the first zero of the pooled correlation: beyond, the integral only gathers noise. */
+/* Up to the first zero of the pooled correlation, later also to 5 tau: beyond, the integral only gathers noise. */
 static size_t lags_used(const struct running *y)
 {
     size_t l = 1;
@@ -118,7 +122,11 @@ static struct green_kubo green_kubo_of(const struct rest_point *p)
 {
     const struct running all = running_integral(p, -1);
     struct green_kubo g = { .lags = lags_used(&all) };
-    g.fit = fit_exponential(&all, g.lags);
+    for (int round = 0; round < 4; round++) {
+        g.fit = fit_exponential(&all, g.lags);
+        while (g.lags > 8 && all.lag[g.lags - 1] > 5.0 * g.fit.tau)
+            g.lags--;
+    }
     g.longest = all.lag[g.lags - 1];
     g.plateau = all.eta[g.lags - 1];
     for (int k = 0; k < p->count; k++) {
@@ -135,20 +143,24 @@ static struct green_kubo green_kubo_of(const struct rest_point *p)
     return g;
 }
 
+/* The running viscosities with their fits, and the means of every point with the fit's parameters. */
 static void write_fits(const struct check_run *run, const struct rest_point *p, const struct green_kubo *g, size_t points)
 {
-    char path[PATH_LENGTH];
-    path_join(path, run->work, "green-kubo.csv");
-    FILE *f = fopen(path, "w");
-    if (!f)
-        return;
-    fputs("point,phi,lag,eta_GK,fit\n", f);
-    for (size_t i = 0; i < points; i++) {
+    FILE *curves = rest_table(run, "green-kubo.csv", "point,phi,lag,C/C(0),eta_GK,fit");
+    for (size_t i = 0; i < points && curves; i++) {
         const struct running y = running_integral(&p[i], -1);
         for (size_t l = 1; l < y.lags; l++)
-            fprintf(f, "%s,%g,%.6g,%.6g,%.6g\n", p[i].label, p[i].phi, y.lag[l], y.eta[l], -g[i].fit.eta * expm1(-y.lag[l] / g[i].fit.tau));
+            fprintf(curves, "%s,%g,%.6g,%.5g,%.5g,%.5g\n", p[i].label, p[i].phi, y.lag[l], y.correlation[l] / y.correlation[0], y.eta[l],
+                    -g[i].fit.eta * expm1(-y.lag[l] / g[i].fit.tau));
     }
-    fclose(f);
+    FILE *fits = rest_table(run, "fits.csv", "point,phi,eta,error,tau,error_tau,residual,eta_at_longest,error_longest,longest");
+    for (size_t i = 0; i < points && fits; i++)
+        fprintf(fits, "%s,%g,%.5g,%.2g,%.5g,%.2g,%.3g,%.5g,%.2g,%.5g\n", p[i].label, p[i].phi, g[i].fit.eta, g[i].eta_error, g[i].fit.tau,
+                g[i].tau_error, g[i].fit.residual, g[i].plateau, g[i].plateau_error, g[i].longest);
+    if (curves)
+        fclose(curves);
+    if (fits)
+        fclose(fits);
 }
 
 static const struct rest_point *labelled(const struct rest_point *p, size_t points, const json_t *name, size_t *at)
@@ -212,36 +224,20 @@ static void judge_fit(struct check_run *run, const struct rest_point *p, const s
                  "s = %.3g", g->fit.eta, g->eta_error, g->fit.tau, g->tau_error, g->fit.residual, g->plateau, g->plateau_error, g->longest);
 }
 
+/* In logarithms: a ratio of two positive numbers known to some tens of per cent. */
 static void judge_growth(struct check_run *run, const struct rest_point *p, const struct green_kubo *g, size_t points)
 {
     const json_t *growth = json_object_get(run->gate_case->parameters, "growth");
     size_t a, b;
     if (!labelled(p, points, json_array_get(growth, 0), &a) || !labelled(p, points, json_array_get(growth, 1), &b))
         return;
-    const double ratio = g[b].fit.tau / g[a].fit.tau, error = ratio * hypot(g[a].tau_error / g[a].fit.tau, g[b].tau_error / g[b].fit.tau);
+    const double ratio = g[b].fit.tau / g[a].fit.tau, error = hypot(g[a].tau_error / g[a].fit.tau, g[b].tau_error / g[b].fit.tau);
     char text[128];
-    snprintf(text, sizeof text, "tau at phi %g over that at %g", p[b].phi, p[a].phi);
-    rest_exceeds(run, text, ratio, error, json_number_value(json_array_get(growth, 2)),
-                 "the correlation time should grow fast above phi 0.5");
-}
-
-/* Pairs [frictional, frictionless]: the same viscosity and the same pressure. */
-static void judge_friction(struct check_run *run, const struct rest_point *p, const struct green_kubo *g, size_t points)
-{
-    size_t a, b;
-    const json_t *pair = json_object_get(run->gate_case->parameters, "friction");
-    const double margin = scene_number(run->gate_case->parameters, "friction_margin", 0.1);
-    if (!labelled(p, points, json_array_get(pair, 0), &a) || !labelled(p, points, json_array_get(pair, 1), &b))
-        return;
-    double error[2];
-    const double with = rest_mean(&p[a], REST_CONTACT, &error[0]), without = rest_mean(&p[b], REST_CONTACT, &error[1]);
-    check_interval(run, MODEL, "contact pressure with friction over that without", with / without,
-                   with / without * hypot(error[0] / with, error[1] / without), 1.0, margin,
-                   "contact pressure at rest is %.4g n kT with friction, %.4g without", with, without);
-    const double eta = g[a].plateau / g[b].plateau, spread = hypot(g[a].plateau_error / g[a].plateau, g[b].plateau_error / g[b].plateau);
-    check_interval(run, MODEL, "Green-Kubo viscosity with friction over that without", eta, eta * spread, 1.0, margin,
-                   "Brownian viscosity at rest is %.4g +- %.2g with friction, %.4g +- %.2g without", g[a].plateau, g[a].plateau_error,
-                   g[b].plateau, g[b].plateau_error);
+    snprintf(text, sizeof text, "log of tau at phi %g over that at %g", p[b].phi, p[a].phi);
+    struct result *r = rest_exceeds(run, text, log(ratio), error, log(json_number_value(json_array_get(growth, 2))),
+                                    "the correlation time should grow fast above phi 0.5, in logarithms");
+    result_notes(r, "tau %.4g +- %.2g over %.4g +- %.2g: %.3g, within a factor exp(+-%.2g)", g[b].fit.tau, g[b].tau_error, g[a].fit.tau, g[a].tau_error,
+                 ratio, error);
 }
 
 void check_published_green_kubo(struct check_run *run)
@@ -259,7 +255,67 @@ void check_published_green_kubo(struct check_run *run)
         judge_fit(run, &p[i], &g[i]);
     }
     judge_growth(run, p, g, points);
-    judge_friction(run, p, g, points);
+    write_fits(run, p, g, points);
+    rest_points_free(p, points);
+}
+
+/* --- friction --- */
+
+/* The running viscosity at this lag, of all realisations but one (`without` < 0: of all). */
+static double running_at(const struct rest_point *p, double lag, int without)
+{
+    const struct running y = running_integral(p, without);
+    size_t l = 1;
+    while (l + 1 < y.lags && y.lag[l] < lag)
+        l++;
+    return y.eta[l - 1] + (y.eta[l] - y.eta[l - 1]) * (lag - y.lag[l - 1]) / (y.lag[l] - y.lag[l - 1]);
+}
+
+static double running_error(const struct rest_point *p, double lag)
+{
+    const double all = running_at(p, lag, -1);
+    double error = 0.0;
+    for (int k = 0; k < p->count; k++)
+        error += (p->count - 1.0) / p->count * gsl_pow_2(running_at(p, lag, k) - all);
+    return sqrt(error);
+}
+
+static void judge_ratio(struct check_run *run, const char *what, const double value[2], const double error[2], double margin)
+{
+    const double ratio = value[1] / value[0];
+    struct result *r = check_interval(run, MODEL, what, ratio, ratio * hypot(error[0] / value[0], error[1] / value[1]), 1.0, margin,
+                                      "%s: %.4g +- %.2g with friction, %.4g +- %.2g without", what, value[1], error[1], value[0], error[0]);
+    result_notes(r, "%.5g +- %.2g with friction, %.5g +- %.2g without", value[1], error[1], value[0], error[0]);
+}
+
+/* Two points: without friction and with it. */
+void check_published_friction(struct check_run *run)
+{
+    static const struct { int value; const char *what, *margin; } means[] = {
+        { REST_CONTACT, "contact pressure", "friction_margin" }, { REST_STRUCTURAL, "structural Brownian pressure", "friction_margin" },
+        { REST_TEMPERATURE, "temperature", "temperature_margin" }, { REST_SPIN_TEMPERATURE, "temperature of spins", "temperature_margin" } };
+    size_t points;
+    struct green_kubo g[REST_POINTS];
+    struct rest_point *p = rest_measure(run, &points);
+    const json_t *parameters = run->gate_case->parameters;
+    const double lag = scene_number(parameters, "lag", NAN), margin = scene_number(parameters, "friction_margin", NAN);
+    if (!p)
+        return;
+    for (size_t k = 0; k < sizeof means / sizeof *means; k++) {
+        double value[2], error[2];
+        for (int side = 0; side < 2; side++)
+            value[side] = rest_mean(&p[side], means[k].value, &error[side]);
+        judge_ratio(run, means[k].what, value, error, scene_number(parameters, means[k].margin, NAN));
+    }
+    const double eta[2] = { running_at(&p[0], lag, -1), running_at(&p[1], lag, -1) };
+    const double error[2] = { running_error(&p[0], lag), running_error(&p[1], lag) };
+    char text[128];
+    snprintf(text, sizeof text, "Green-Kubo viscosity up to lag %.3g", lag);
+    judge_ratio(run, text, eta, error, margin);
+    for (size_t i = 0; i < points; i++)
+        g[i] = green_kubo_of(&p[i]);
+    result_notes(&run->results.item[run->results.count - 1], "up to lag %.3g: %.4g +- %.2g with friction, %.4g +- %.2g without; by fits %.3g +- %.2g and %.3g +- %.2g",
+                 lag, eta[1], error[1], eta[0], error[0], g[1].fit.eta, g[1].eta_error, g[0].fit.eta, g[0].eta_error);
     write_fits(run, p, g, points);
     rest_points_free(p, points);
 }
@@ -314,6 +370,7 @@ void check_published_split(struct check_run *run)
 const struct check published_rest_checks[] = {
     { "published-green-kubo", check_published_green_kubo },
     { "published-split", check_published_split },
+    { "published-friction", check_published_friction },
     { "published-diffusion", check_published_diffusion },
     { NULL, NULL },
 };

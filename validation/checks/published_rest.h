@@ -5,6 +5,7 @@
 #include "check.h"
 
 void check_published_green_kubo(struct check_run *run);
+void check_published_friction(struct check_run *run);
 void check_published_split(struct check_run *run);
 void check_published_diffusion(struct check_run *run);
 

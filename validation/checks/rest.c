@@ -236,6 +236,26 @@ static void write_sample(FILE *values, FILE *correlation, const struct rest_poin
         fflush(correlation);
 }
 
+/* means.csv: every value of every point with its standard error. */
+static void write_means(const struct check_run *run, const struct rest_point *point, size_t points)
+{
+    char header[512] = "point,phi,realisations";
+    for (int v = 0; v < REST_VALUES; v++)
+        snprintf(header + strlen(header), sizeof header - strlen(header), ",%s,error", rest_value_name[v]);
+    FILE *f = rest_table(run, "means.csv", header);
+    for (size_t i = 0; i < points && f; i++) {
+        fprintf(f, "%s,%g,%d", point[i].label, point[i].phi, point[i].count);
+        for (int v = 0; v < REST_VALUES; v++) {
+            double error;
+            const double mean = rest_mean(&point[i], v, &error);
+            fprintf(f, ",%.5g,%.2g", mean, error);
+        }
+        fputc('\n', f);
+    }
+    if (f)
+        fclose(f);
+}
+
 struct rest_point *rest_measure(struct check_run *run, size_t *points)
 {
     const json_t *list = json_object_get(run->gate_case->parameters, "points");
@@ -277,9 +297,11 @@ struct rest_point *rest_measure(struct check_run *run, size_t *points)
         fclose(values);
     if (correlation)
         fclose(correlation);
-    if (!good && point) {
+    if (good)
+        write_means(run, point, *points);
+    else if (point) {
         rest_points_free(point, *points);
-        return NULL;
+        point = NULL;
     }
     return point;
 }
