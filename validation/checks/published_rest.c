@@ -314,22 +314,24 @@ void check_published_friction(struct check_run *run)
     judge_ratio(run, text, eta, error, margin);
     for (size_t i = 0; i < points; i++)
         g[i] = green_kubo_of(&p[i]);
-    result_notes(&run->results.item[run->results.count - 1], "up to lag %.3g: %.4g +- %.2g with friction, %.4g +- %.2g without; by fits %.3g +- %.2g and %.3g +- %.2g",
-                 lag, eta[1], error[1], eta[0], error[0], g[1].fit.eta, g[1].eta_error, g[0].fit.eta, g[0].eta_error);
+    result_notes(&run->results.item[run->results.count - 1], "up to lag %.3g: %.4g +- %.2g with friction, %.4g +- %.2g without; by fits "
+                 "%.3g +- %.2g and %.3g +- %.2g", lag, eta[1], error[1], eta[0], error[0], g[1].fit.eta, g[1].eta_error, g[0].fit.eta, g[0].eta_error);
     write_fits(run, p, g, points);
     rest_points_free(p, points);
 }
 
 /* --- the split of the pressure --- */
 
-/* eps/2 of the explicit scheme at the inner gap, for spheres of species 1; 0 for the split. */
-static double predicted_deficit(const struct rest_point *p, const struct model *m)
+/* Step of the explicit scheme; 0 for the split. */
+static double explicit_step(const struct rest_point *p)
 {
-    const json_t *dynamics = json_object_get(json_object_get(p->json, "set"), "dynamics");
-    const double dt = scene_number(dynamics, "verlet.dt", NAN);
+    return scene_number(json_object_get(json_object_get(p->json, "set"), "dynamics"), "verlet.dt", 0.0);
+}
+
+/* eps/2 of a step dt of the explicit scheme at the inner gap, for spheres of species 1. */
+static double predicted_deficit(double dt, const struct model *m)
+{
     double scalar[THEORY_SCALARS];
-    if (!isfinite(dt))
-        return 0.0;
     theory_scalars(&m->lubrication, m->radius[0], m->radius[0], 2.0 * m->radius[0], scalar);
     return 0.5 * scalar[THEORY_XA] * dt / (0.5 * free_sphere(m).mass);
 }
@@ -344,8 +346,9 @@ void check_published_split(struct check_run *run)
     const double sigma = theory_thermal_diameter(m.radius[0], p->stiffness, p->kT);
     const double expected = theory_carnahan_starling(M_PI / 6.0 * p->density * gsl_pow_3(sigma)) - 1.0, margin = run->gate_case->tolerance;
     char text[128];
+    FILE *table = rest_table(run, "split.csv", "point,step,contact,error,predicted,lubrication,error_lubrication,sum,error_sum");
     for (size_t i = 0; i < points; i++) {
-        const double share = 1.0 - predicted_deficit(&p[i], &m);
+        const double share = 1.0 - predicted_deficit(explicit_step(&p[i]), &m);
         double error[3], sum[REST_REALISATIONS], mean = 0.0, squares = 0.0;
         const double contact = rest_mean(&p[i], REST_CONTACT, &error[0]), lubrication = rest_mean(&p[i], REST_LUBRICATION, &error[1]);
         for (int k = 0; k < p[i].count; k++)
@@ -353,6 +356,9 @@ void check_published_split(struct check_run *run)
         for (int k = 0; k < p[i].count; k++)
             squares += gsl_pow_2(sum[k] - mean);
         error[2] = sqrt(squares / (p[i].count - 1) / p[i].count);
+        if (table)
+            fprintf(table, "%s,%g,%.4f,%.2g,%.4f,%.4f,%.2g,%.4f,%.2g\n", p[i].label, explicit_step(&p[i]), contact, error[0], expected * share, lubrication,
+                    error[1], mean, error[2]);
         struct result *r = check_interval(run, MODEL, said(text, &p[i], "contact pressure"), contact, error[0], expected * share, margin * expected,
                                           "contact pressure %.4g n kT; Carnahan and Starling times 1 - eps/2 give %.4g", contact, expected * share);
         result_notes(r, "contact %.4g +- %.2g (predicted %.4g), lubrication %.3g +- %.2g, sum %.4g +- %.2g, in n kT", contact, error[0],
@@ -360,6 +366,8 @@ void check_published_split(struct check_run *run)
         check_interval(run, MODEL, said(text, &p[i], "contact and lubrication pressure together"), mean, error[2], expected, 2.0 * margin * expected,
                        "contact and lubrication pressure add up to %.4g n kT; Carnahan and Starling give %.4g", mean, expected);
     }
+    if (table)
+        fclose(table);
     double error[2];
     const double low = rest_mean(&p[0], REST_LUBRICATION, &error[0]), high = rest_mean(&p[points - 1], REST_LUBRICATION, &error[1]);
     rest_exceeds(run, "lubrication pressure, coarsest explicit step less the first point", high - low, hypot(error[0], error[1]), 0.0,
