@@ -20,8 +20,8 @@ few_lags() { awk -F, 'NR == 1 || $4 < 0.51 || ($4 * 40) % 10 < 0.5'; }
 dilute() { awk 'BEGIN { print "kT,t/tau_I,msd,eq_4.2,error"; split("0.017 0.17 1.7", kT, " "); k = 1 } NF == 4 { printf "%s,%.5g,%s,%s,%s\n", kT[k], $1 / 4.5, $2, $3, $4; old = 1 } NF == 0 && old { k++; old = 0 }'; }
 
 put fig4.2a-dilute-displacement msd.dat fig4.2a.csv "Mean square displacement per component, phi 0.001; tau_I/tau_B = kT; t/tau_I with m/(6 pi eta a) = tau_I/4.5; a = 1" dilute
-put fig4.2d-diffusion msd.csv fig4.2b.csv "Mean square displacement per component; the first three times of each point are of the short runs" few_lags
-put fig4.2d-diffusion diffusion.csv fig4.2d.csv "D over kT/(6 pi eta a): slope from 0.05 to 0.5 a^2/D_0 (middle), 1 to 2 (long); <dx^2>/((kT/m) t^2) at t/tau_I = 1e-5, 1e-4, 1e-3"
+put fig4.2d-diffusion msd.csv fig4.2b.csv "Mean square displacement per component; the first four times of each point are of the short runs" few_lags
+put fig4.2d-diffusion diffusion.csv fig4.2d.csv "D over kT/(6 pi eta a): slope from 0.05 to 0.5 a^2/D_0 (middle), 1 to 2 (long); <dx^2>/((kT/m) t^2) at t/tau_I = 1e-6 to 1e-3"
 put fig4.3b-green-kubo green-kubo.csv fig4.3b.csv "Running Green-Kubo viscosity over that of the fluid, lag in tau_I (tau_B = 5.88 tau_I), and its fit"
 put fig4.3b-green-kubo fits.csv fig4.3b-fits.csv "Fits eta (1 - exp(-s/tau)), errors by jackknife over realisations; viscosities over that of the fluid"
 put fig4.3b-green-kubo means.csv rest-pressures.csv "Pressures in n kT, temperatures in kT, tau_I/tau_B 0.17; standard errors from realisations"

@@ -21,8 +21,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PER_TIME = 40, MIDDLE = PER_TIME / 2, POINTS = 24, BLOCKS = 512, SHORT = 3 };     /* states per a^2/D_0; lags in states */
-static const int short_steps[SHORT] = { 10, 100, 1000 };
+enum { PER_TIME = 40, MIDDLE = PER_TIME / 2, POINTS = 24, BLOCKS = 512, SHORT = 4 };     /* states per a^2/D_0; lags in states */
+static const int short_steps[SHORT] = { 1, 10, 100, 1000 };
 static const double short_dt = 1e-6;                                    /* of tau_I */
 
 struct estimate { double mean, error; };
@@ -195,8 +195,9 @@ static void judge_ballistic(struct check_run *run, const struct diffusion *d)
     const double margin = scene_number(run->gate_case->parameters, "ballistic_margin", 0.01);
     struct result *r = check_interval(run, MODEL, text, measured, hot.error, 1.0, margin,
                                       "at t = %.0e tau_I the mean square displacement is %.4g of (kT/m) t^2", d->at_time[0], measured);
-    result_notes(r, "<dx^2>/((kT/m) t^2) at t/tau_I = %g, %g, %g: %.4f, %.4f, %.4f; kinetic temperature %.4f +- %.4f kT", d->at_time[0], d->at_time[1],
-                 d->at_time[2], measured, d->ballistic[1] / d->squares * hot.mean, d->ballistic[2] / d->squares * hot.mean, hot.mean, hot.error);
+    const double unit = hot.mean / d->squares;
+    result_notes(r, "<dx^2>/((kT/m) t^2) at t/tau_I = 1e-6, 1e-5, 1e-4, 1e-3: %.4f, %.4f, %.4f, %.4f; kinetic temperature %.4f +- %.4f kT", measured,
+                 d->ballistic[1] * unit, d->ballistic[2] * unit, d->ballistic[3] * unit, hot.mean, hot.error);
 }
 
 static const struct diffusion *find(const struct diffusion *d, size_t points, double phi, double ratio)
@@ -254,7 +255,7 @@ void check_published_diffusion(struct check_run *run)
     const size_t points = json_array_size(list) < POINTS ? json_array_size(list) : POINTS;
     struct diffusion *d = calloc(POINTS, sizeof *d);
     FILE *values = rest_table(run, "diffusion.csv", "phi,tau_I/tau_B,D_middle/D0,error,D_long/D0,error_long,T/kT,error_T,"
-                                                    "ballistic_1e-5,ballistic_1e-4,ballistic_1e-3");
+                                                    "ballistic_1e-6,ballistic_1e-5,ballistic_1e-4,ballistic_1e-3");
     FILE *curves = rest_table(run, "msd.csv", "phi,tau_I/tau_B,t/tau_I,t*D0/a^2,msd/a^2");
     bool good = d != NULL;
     for (size_t k = 0; k < points && good; k++)

@@ -298,7 +298,7 @@ void check_published_friction(struct check_run *run)
     struct green_kubo g[REST_POINTS];
     struct rest_point *p = rest_measure(run, &points);
     const json_t *parameters = run->gate_case->parameters;
-    const double lag = scene_number(parameters, "lag", NAN), margin = scene_number(parameters, "friction_margin", NAN);
+    const double lag = scene_number(parameters, "lag", NAN);
     if (!p)
         return;
     for (size_t k = 0; k < sizeof means / sizeof *means; k++) {
@@ -311,7 +311,7 @@ void check_published_friction(struct check_run *run)
     const double error[2] = { running_error(&p[0], lag), running_error(&p[1], lag) };
     char text[128];
     snprintf(text, sizeof text, "Green-Kubo viscosity up to lag %.3g", lag);
-    judge_ratio(run, text, eta, error, margin);
+    judge_ratio(run, text, eta, error, scene_number(parameters, "viscosity_margin", NAN));
     for (size_t i = 0; i < points; i++)
         g[i] = green_kubo_of(&p[i]);
     result_notes(&run->results.item[run->results.count - 1], "up to lag %.3g: %.4g +- %.2g with friction, %.4g +- %.2g without; by fits "
