@@ -4,7 +4,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 work=${1:-build/cases} out=docs/published
-solver=$(git log -1 --format=%h -- solver)
+solver=${SOLVER:-$(git log -1 --format=%h -- solver)}      # SOLVER=commit where an older one did the runs
 
 # put CASE FILE NAME SENTENCE [FILTER]
 put() {
