@@ -282,6 +282,7 @@ void check_published_diffusion(struct check_run *run)
             if (first == k)
                 judge_ballistic(run, d, points, d[k].phi);
         }
+        judge_fall(run, d, points, 1.7);
         judge_fall(run, d, points, 0.17);
         judge_collapse(run, d, points, 0.017, 0.17, run->gate_case->tolerance);
     }
