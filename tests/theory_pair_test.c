@@ -5,6 +5,7 @@
 #include <gsl/gsl_integration.h>
 #include <gsl/gsl_math.h>
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
 
 static const struct theory_lubrication law = { 0.7, 2e-3, 0.4, false };
@@ -189,12 +190,43 @@ static void hard_spheres_have_their_virials(void)
     check_relative(theory_mixture_pressure(2, sparse, d) - 1.0, second, 2e-4, "second virial coefficient of a mixture");
 }
 
+/*
+ * Two unequal spheres across a face, near enough for the larger one's shell only; and points placed at random without regard to
+ * each other, which fill a sphere of radius 2a + fa round each by their density.
+ */
+static void structural_stress_counts_shells(void)
+{
+    const double x[2][3] = { { 0.3, 4.0, 5.0 }, { 9.2 - 2.46 + 0.3, 4.0, 5.0 } }, radius[2] = { 1.0, 1.4 }, kT = 0.31, d = 0.01, edge = 9.2;
+    double S[6], sum = 0.0;
+    theory_structural_stress(2, x, radius, edge, kT, 0.05, d, S);
+    check_relative(S[0], -kT * 1.4 / (0.07 + d) / (edge * edge * edge), 1e-12, "the larger one's shell");
+    check_true(S[1] == 0.0 && S[2] == 0.0 && S[3] == 0.0 && S[4] == 0.0 && S[5] == 0.0, "along the line of centres");
+    enum { SPHERES = 40, ROUNDS = 400 };
+    double at[SPHERES][3], equal[SPHERES];
+    uint64_t state = 88172645463325252u;
+    for (int round = 0; round < ROUNDS; round++) {
+        for (int i = 0; i < SPHERES; i++) {
+            equal[i] = 1.3;
+            for (int c = 0; c < 3; c++) {
+                state ^= state << 13, state ^= state >> 7, state ^= state << 17;
+                at[i][c] = edge * (double)(state >> 11) / 9007199254740992.0;
+            }
+        }
+        theory_structural_stress(SPHERES, (const double (*)[3])at, equal, edge, kT, 0.05, d, S);
+        sum -= (S[0] + S[1] + S[2]) / 3.0 / ROUNDS;
+    }
+    const double V = edge * edge * edge, R = 2.6 + 0.05 * 1.3, share = 4.0 / 3.0 * 3.14159265358979 * R * R * R / V;
+    const double weight = kT / V * 1.3 / (0.05 * 1.3 + d) / 3.0, pairs = SPHERES * (SPHERES - 1.0);
+    check_close(sum, weight * pairs * share, 5.0 * weight * sqrt(2.0 * pairs * share * (1.0 - share) / ROUNDS), "random points: 5 standard errors");
+}
+
 static const struct unit_test tests[] = {
     { "integral of the squeezing resistance: closed form and quadrature", squeeze_integral_is_the_quadrature },
     { "head-on approach: closed form, momentum", squeezing_in_time_is_the_closed_form },
     { "two spheres far apart are free", far_apart_each_is_free },
     { "oblique collision: momenta, energy, cap", friction_keeps_momenta_and_takes_energy },
     { "one encounter in shear: the symmetric pair, and both spheres", encounters_of_the_symmetric_pair },
+    { "structural stress: shells of unequal radii, random points", structural_stress_counts_shells },
     { "hard spheres: virial coefficients, thermal diameter", hard_spheres_have_their_virials },
     { NULL, NULL },
 };

@@ -12,8 +12,7 @@
  * correction; a realisation of N spheres has a pressure wrong by order 1/N.
  */
 #include "dense.h"
-#include "packing.h"
-#include "pair.h"
+#include "rest.h"
 #include "statistics.h"
 
 #include <stdlib.h>
@@ -40,71 +39,44 @@ static double mean_pressure(struct check_run *run, const char *out, double disca
     return rows > 0.0 ? sum / rows : NAN;
 }
 
-static struct state_row *start_spheres(struct check_run *run, const struct model *m, const struct packing_species *kind, int count, double edge,
-                                       double kT, unsigned seed)
-{
-    struct state_row *row = calloc((size_t)count, sizeof *row);
-    char why[WHY_LENGTH] = "the gate is out of memory";
-    if (!row || !packing_make(kind, (int)m->species, edge, 0.0, seed, row, why)) {
-        check_garbage(run, why);
-        free(row);
-        return NULL;
-    }
-    gsl_rng *random = pair_random(run);
-    gsl_rng_set(random, seed);
-    for (int i = 0; i < count; i++) {
-        const double a = kind[row[i].species - 1].radius, mass = 4.0 / 3.0 * M_PI * m->density[row[i].species - 1] * gsl_pow_3(a);
-        random_vector(random, sqrt(kT / mass), row[i].u);
-    }
-    gsl_rng_free(random);
-    return row;
-}
-
 void check_equation_of_state(struct check_run *run)
 {
     const json_t *parameters = run->gate_case->parameters;
     const int realisations = (int)scene_number(parameters, "realisations", 0);
     const double phi = scene_number(parameters, "phi", NAN), steps = scene_number(parameters, "steps", NAN);
     struct model m;
-    double pressure[64], counts[4];
-    struct packing_species kind[4];
+    double pressure[64], counts[8];
     size_t species;
-    int answered = 0, count = 0;
-    parameter_list(parameters, "spheres", counts, &species, 4);
+    int answered = 0;
+    parameter_list(parameters, "counts", counts, &species, 8);
     if (!model_read(run, run->gate_case->scene, &m) || realisations < 2 || realisations > 64 || species != m.species)
         return;
-    for (size_t k = 0; k < species; k++) {
-        kind[k] = (struct packing_species){ m.radius[k], (int)counts[k] };
-        count += kind[k].count;
-    }
-    const double edge = packing_edge(kind, (int)species, phi), kT = scene_number(run->gate_case->scene, "fluid.kT", NAN);
+    struct rest rest = { 0 };
+    double volume = NAN, kT = NAN;
     for (int k = 0; k < realisations; k++) {
-        json_t *scene = json_deep_copy(run->gate_case->scene);
-        const unsigned seed = (run->seed + (unsigned)k) & 0xffffffffu;
-        struct state_row *row = start_spheres(run, &m, kind, count, edge, kT, seed);
         char name[32], out[PATH_LENGTH];
+        if (!rest_start(run, run->gate_case->scene, parameters, phi, (run->seed + (unsigned)k) & 0xffffffffu, &rest))
+            return;
+        volume = rest.volume;
+        kT = rest.kT;
         snprintf(name, sizeof name, "realisation-%d", k);
         check_progress(run, "realisation %d of %d", k + 1, realisations);
-        scene_set(scene, "seed", json_integer(seed));
-        scene_set(scene, "box.lengths", json_pack("[fff]", edge, edge, edge));
-        scene_set(scene, "start.file", json_string("states.csv"));
-        scene_set(scene, "run.steps", json_integer((json_int_t)steps));
-        scene_set(scene, "output.stress.every", json_integer((json_int_t)scene_number(parameters, "every", 1)));
-        const struct question q = { .protocol = "run", .scene = scene, .state = row, .states = (size_t)count };
-        if (row && check_ask(run, name, &q, out)) {
+        scene_set(rest.scene, "run.steps", json_integer((json_int_t)steps));
+        scene_set(rest.scene, "output.stress.every", json_integer((json_int_t)scene_number(parameters, "every", 1)));
+        const struct question q = { .protocol = "run", .scene = rest.scene, .state = rest.row, .states = rest.count };
+        if (check_ask(run, name, &q, out)) {
             pressure[k] = mean_pressure(run, out, scene_number(parameters, "discard", 0));
             answered += isfinite(pressure[k]);
         }
-        free(row);
-        json_decref(scene);
+        rest_free(&rest);
         if (answered <= k)
             return;
     }
-    double mean, sigma[4], density[4], packed = 0.0;
-    const double n = count / gsl_pow_3(edge);
+    double mean, sigma[8], density[8], n = 0.0, packed = 0.0;
     for (size_t k = 0; k < species; k++) {
         sigma[k] = theory_thermal_diameter(m.radius[k], m.contact.normal_stiffness, kT);
-        density[k] = kind[k].count / gsl_pow_3(edge);
+        density[k] = counts[k] / volume;
+        n += density[k];
         packed += M_PI / 6.0 * density[k] * gsl_pow_3(sigma[k]);
     }
     const struct interval one = statistics_mean_interval(pressure, (size_t)realisations, 0.682689, &mean);   /* one standard error */
@@ -113,6 +85,6 @@ void check_equation_of_state(struct check_run *run)
     struct result *r = check_interval(run, MODEL, "contact pressure", measured, 0.5 * (one.high - one.low) / (n * kT), expected,
                                       run->gate_case->tolerance * expected, "the contact pressure at rest is %.4g n kT; %s give %.4g at the "
                                       "thermal diameters", measured, species == 1 ? "Carnahan and Starling" : "Boublik and Mansoori et al.", expected);
-    result_notes(r, "%d realisations of %d spheres at phi %.3g (%.4g with the thermal diameters): %.4g +- %.2g", realisations, count, phi, packed,
+    result_notes(r, "%d realisations of %.0f spheres at phi %.3g (%.4g with the thermal diameters): %.4g +- %.2g", realisations, n * volume, phi, packed,
                  measured, 0.5 * (one.high - one.low) / (n * kT));
 }

@@ -34,14 +34,18 @@ static bool track_read(const char *path, const int *at, struct track *t, char wh
         return false;
     const size_t rows = t->steps * t->count;
     bool *found = calloc(rows, sizeof *found), good = found != NULL;
-    size_t missing = rows;
+    size_t missing = rows, k = 0;
     for (size_t r = 0; r < table.rows && good; r++) {
         const double step = table_at(&table, r, 0), id = table_at(&table, r, 1);
-        size_t k = 0;
-        while (k < t->steps && step != at[k])
+        while (k < t->steps && step > at[k])            /* rows come in order of time, as a rule */
             k++;
-        if (k == t->steps)
+        if (k == t->steps || step != at[k])
+            for (k = 0; k < t->steps && step != at[k];)
+                k++;
+        if (k == t->steps) {
+            k = 0;
             continue;
+        }
         if (id < 1 || id > (double)t->count || id != floor(id)) {
             good = why_not(why, "%s: step %g has a particle with id %g; ids are 1 to %zu", path, step, id, t->count);
             break;
@@ -65,8 +69,7 @@ static bool track_read(const char *path, const int *at, struct track *t, char wh
     return good;
 }
 
-bool track_ask(struct check_run *run, const char *name, json_t *scene, const struct state_row *start, size_t count, const int *at,
-               size_t steps, struct track *t)
+void track_want(json_t *scene, const int *at, size_t steps)
 {
     json_t *list = json_array();
     for (size_t k = 0; k < steps; k++)
@@ -77,10 +80,11 @@ bool track_ask(struct check_run *run, const char *name, json_t *scene, const str
     const char *rotation = json_string_value(scene_get(scene, "dynamics.verlet.rotation"));
     if (rotation && strcmp(rotation, "on") == 0)
         scene_set(scene, "output.states.turn", json_true());
-    const struct question q = { .protocol = "run", .scene = scene, .state = start, .states = count };
-    char out[PATH_LENGTH], path[PATH_LENGTH], why[WHY_LENGTH];
-    if (!check_ask(run, name, &q, out))
-        return false;
+}
+
+bool track_load(struct check_run *run, const char *out, const int *at, size_t steps, size_t count, struct track *t)
+{
+    char path[PATH_LENGTH], why[WHY_LENGTH];
     *t = (struct track){ .steps = steps, .count = count, .point = calloc(steps * count, sizeof *t->point) };
     path_join(path, out, "trajectory.csv");
     if (t->point && track_read(path, at, t, why))
@@ -88,6 +92,15 @@ bool track_ask(struct check_run *run, const char *name, json_t *scene, const str
     check_garbage(run, t->point ? why : "the gate is out of memory");
     track_free(t);
     return false;
+}
+
+bool track_ask(struct check_run *run, const char *name, json_t *scene, const struct state_row *start, size_t count, const int *at,
+               size_t steps, struct track *t)
+{
+    char out[PATH_LENGTH];
+    track_want(scene, at, steps);
+    const struct question q = { .protocol = "run", .scene = scene, .state = start, .states = count };
+    return check_ask(run, name, &q, out) && track_load(run, out, at, steps, count, t);
 }
 
 const struct check single_checks[] = { { "single-langevin", check_langevin }, { "single-shear", check_shear }, { "single-tether", check_tether },

@@ -17,6 +17,9 @@ struct track { size_t steps, count; struct track_point *point; /* [step asked fo
  */
 bool track_ask(struct check_run *run, const char *name, json_t *scene, const struct state_row *start, size_t count, const int *at,
                size_t steps, struct track *t);
+/* Its two halves, for those who ask for more outputs: what to write into the scene before asking, and the reading. */
+void track_want(json_t *scene, const int *at, size_t steps);
+bool track_load(struct check_run *run, const char *out, const int *at, size_t steps, size_t count, struct track *t);
 const struct track_point *track_at(const struct track *t, size_t step, size_t sphere);
 void track_free(struct track *t);
 

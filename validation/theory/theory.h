@@ -146,4 +146,8 @@ double theory_carnahan_starling(double phi);
 double theory_mixture_pressure(int species, const double density[], const double diameter[]);
 double theory_thermal_diameter(double radius, double stiffness, double kT);
 
+/* Structural Brownian stress xx yy zz xy xz yz of spheres in a periodic cube (structural_stress.c). */
+void theory_structural_stress(int count, const double (*x)[3], const double *radius, double edge, double kT, double fraction, double depth,
+                              double stress[6]);
+
 #endif
