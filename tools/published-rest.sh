@@ -29,7 +29,7 @@ put fig4.9-friction-at-rest fits.csv fig4.9-rest-fits.csv "Fits eta (1 - exp(-s/
 put fig4.9-friction-at-rest means.csv fig4.9-rest.csv "Pressures in n kT, temperatures in kT, with and without friction, tau_I/tau_B 1.7"
 put rest-split split.csv rest-split.csv "Pressures in n kT at phi 0.40 against the step of the explicit scheme (0: the split, at step 1e-3)"
 
-for plot in "$out"/*.gp; do
+for plot in "$out"/fig4.2?.gp "$out"/fig4.3b.gp "$out"/rest-split.gp; do
     name=$(basename "$plot" .gp)
     gnuplot -e "set terminal pngcairo size 640,440 font 'sans,10' background 'white'; set output '$out/$name.png'; set datafile separator ','; set datafile commentschars '#'; data='$out/'" "$plot"
 done
