@@ -15,11 +15,12 @@ while [ $((k += 1)) -lt "$count" ]; do
     case $name in *"${ONLY:-}"*) ;; *) continue ;; esac
     class=$(jq -r ".faults[$k].class" $list)
     work=build/faults/$k
-    rm -rf "$work" && mkdir -p "$work" && cp -r solver Makefile "$work"
+    rm -rf "$work" && mkdir -p "$work/build/obj" && cp -a solver Makefile "$work"
+    cp -a build/obj/solver "$work/build/obj"        # with their times, so that only what the fault touches is compiled anew
     FIND=$(jq -r ".faults[$k].find | @base64" $list) REPLACE=$(jq -r ".faults[$k].replace | @base64" $list) \
         perl -MMIME::Base64 -0777 -i -pe 'BEGIN { $f = decode_base64($ENV{FIND}); $r = decode_base64($ENV{REPLACE}) }
             $n = () = /\Q$f\E/g; die "found $n times, not once\n" unless $n == 1; s/\Q$f\E/$r/' "$work/$(jq -r ".faults[$k].file" $list)"
-    make --no-print-directory -s -C "$work" -j"$(nproc)" B=build CFLAGS="-O2 -Wno-error" build/shear 2>"$work/make.txt" ||
+    make --no-print-directory -s -C "$work" -j"$(nproc)" B=build CFLAGS="-O2 -g -Wno-error" build/shear 2>"$work/make.txt" ||
         { echo "faults: \"$name\" does not build"; cat "$work/make.txt"; exit 1; }
     verdict="passed everything" where="" said="" start=$(date +%s.%N)
     for layer in 1 2 3 4 5 6; do
