@@ -189,6 +189,25 @@ static void runs_at_rest_go_on(void)
     check_same_file(in_folder("at-rest"), in_folder("at-rest-split"), "green_kubo.csv", "at rest");
 }
 
+static void other_integrators_go_on(void)
+{
+    static const char *const dynamics[] = { "dynamics={\"split\":{\"dt\":2e-5}}", "dynamics={\"split\":{\"dt\":2e-5,\"friction\":\"sweeps\"}}",
+                                            "dynamics={\"predicted_verlet\":{\"dt\":2e-5}}" };
+    char whole[40], halves[40];
+    struct error e;
+    make_folder();
+    for (int k = 0; k < 3; k++) {
+        const char *const set[] = { dynamics[k], "run.steps=300" }, *const cut[] = { dynamics[k], "run.steps=157" };
+        const struct scene_options all = { .set = set, .set_count = 2 }, part = { .set = cut, .set_count = 2 };
+        const struct scene_options rest = { .set = set, .set_count = 2, .resume = true };
+        snprintf(whole, sizeof whole, "dynamics-%d", k);
+        snprintf(halves, sizeof halves, "dynamics-%d-split", k);
+        check_true(run_as(&all, in_folder(whole), &e) == 0, e.text);
+        check_true(run_as(&part, in_folder(halves), &e) == 0 && run_as(&rest, in_folder(halves), &e) == 0, e.text);
+        check_same(in_folder(whole), in_folder(halves), dynamics[k]);
+    }
+}
+
 static void interrupted_runs_go_on(void)
 {
     struct error e;
@@ -288,6 +307,7 @@ static const struct unit_test tests[] = {
     { "a run split in two is the whole run", split_runs_are_the_whole },
     { "a run in stages goes on", staged_runs_go_on },
     { "a run at rest goes on", runs_at_rest_go_on },
+    { "runs of the other integrators go on", other_integrators_go_on },
     { "interrupted runs go on", interrupted_runs_go_on },
     { "killed runs go on", killed_runs_go_on },
     { "doubtful checkpoints are refused", doubtful_checkpoints_are_refused },
