@@ -20,6 +20,8 @@ static const char help[] =
     "\n"
     "  gate run --candidate COMMAND [options]   ask the cases, print verdicts, write a report\n"
     "  gate list [options]                      the cases that `run` would ask\n"
+    "  gate explain [FLAG]                      a class of mistakes: what it is, what it does, where it was seen, which cases\n"
+    "                                           would show it; without FLAG the list of classes\n"
     "  gate calibrate --candidate COMMAND --seeds N --table FILE [options]\n"
     "                                           the cases with p-values under N seeds, for a candidate that is right:\n"
     "                                           false verdicts and the spread of p; goes on where FILE ends\n"
@@ -256,6 +258,38 @@ static int run_cases(const struct options *o, const struct suite_of_cases *suite
     return written ? report_exit_code(tally) : EXIT_USAGE;
 }
 
+/* One flag of flags.json, or all their names. */
+static int explain(const char *flag, const char *suite_dir)
+{
+    char path[PATH_LENGTH], folder[PATH_LENGTH], why[WHY_LENGTH];
+    struct suite_of_cases suite;
+    json_error_t where;
+    path_join(path, suite_dir, "flags.json");
+    path_join(folder, suite_dir, "cases");
+    json_t *flags = json_load_file(path, 0, &where), *entry;
+    if (!flags)
+        return usage("%s:%d:%d: %s", path, where.line, where.column, where.text);
+    const char *name;
+    if (!flag)
+        json_object_foreach(flags, name, entry)
+            printf("%-34s %s\n", name, json_string_value(json_object_get(entry, "mistake")));
+    entry = flag ? json_object_get(flags, flag) : NULL;
+    int code = flag && !entry ? usage("there is no flag '%s'; `gate explain` lists them", flag) : 0;
+    if (entry && !cases_load(folder, &suite, why))
+        code = usage("%s", why);
+    else if (entry) {
+        printf("%s\n\n  mistake   %s\n  effect    %s\n  seen      %s\n  cases    ", flag, json_string_value(json_object_get(entry, "mistake")),
+               json_string_value(json_object_get(entry, "effect")), json_string_value(json_object_get(entry, "seen")));
+        for (size_t k = 0; k < suite.count; k++)
+            if (case_lists(suite.item[k].flags, flag))
+                printf(" %s", suite.item[k].name);
+        printf("\n");
+        cases_free(&suite);
+    }
+    json_decref(flags);
+    return code;
+}
+
 static int with_suite(const char *verb, const struct options *o)
 {
     struct suite_of_cases suite;
@@ -289,12 +323,15 @@ int main(int argc, char **argv)
         return fputs(help, stdout) < 0;
     if (strcmp(verb, "--version") == 0)
         return printf("gate %s, suite 1.0\n", GATE_VERSION) < 0;
-    if (strcmp(verb, "run") != 0 && strcmp(verb, "list") != 0 && strcmp(verb, "calibrate") != 0)
-        return usage("%s'%s'; see gate --help", *verb ? "unknown command " : "say `run`, `list` or `calibrate`, not ", verb);
+    if (strcmp(verb, "run") != 0 && strcmp(verb, "list") != 0 && strcmp(verb, "calibrate") != 0
+        && strcmp(verb, "explain") != 0)
+        return usage("%s'%s'; see gate --help", *verb ? "unknown command " : "say `run`, `list`, `explain` or `calibrate`, not ", verb);
 
     struct options o = { .report = "build/report", .work = "build/cases", .jobs = 1,
                          .calibrating = strcmp(verb, "calibrate") == 0 };
     find_suite(o.suite_dir);
+    if (strcmp(verb, "explain") == 0)
+        return argc > 3 ? usage("explain takes one flag") : explain(argc == 3 ? argv[2] : NULL, o.suite_dir);
     for (int k = 2; k < argc; k += 2) {
         if (strcmp(argv[k], "--help") == 0)
             return fputs(help, stdout) < 0;
