@@ -150,7 +150,7 @@ static void list_pair(struct neighbours *n, const struct box *box, const struct 
     const uint32_t key = ((uint32_t)(sign * lattice[0]) & 31u) | ((uint32_t)(sign * lattice[1]) & 31u) << 5 |
                          ((uint32_t)(sign * lattice[2]) & 31u) << 10;
     n->candidate[n->count++] = (struct candidate){ sign > 0 ? i : j, sign > 0 ? j : i, offset_index(to, span), key,
-                                                   radius_of(p, i) + radius_of(p, j), range * range };
+                                                   radius_of(p, i) + radius_of(p, j), range * range, 1.0 };
 }
 
 /* Pairs of particle i with all of one cell. In its own cell, unshifted, each pair once: those later in the list. */
@@ -238,7 +238,7 @@ bool neighbours_find(struct neighbours *n, struct box *box, struct particles *p,
     near->deepest = 0.0;
     if (n->largest_range <= 0.0 && !box_wants_remap(box) && n->made && ++n->steps_since < 100)
         return true;                                                /* no pair force: only keep particles near the cell */
-    *relisted = outdated(n, box, p);
+    *relisted = !n->foreign && outdated(n, box, p);
     if (*relisted && !make_list(n, box, p, e))
         return false;
     n->steps_since++;
@@ -266,7 +266,7 @@ bool neighbours_find(struct neighbours *n, struct box *box, struct particles *p,
                                    p->tag[c->i], p->tag[c->j], box->time);
         }
         near->pair[near->count++] = (struct pair){ .i = c->i, .j = c->j, .normal = scaled(r, 1.0 / distance), .distance = distance,
-            .gap = gap, .image_velocity = offset->velocity, .weight = 1.0, .history = n->history ? &n->history[k] : NULL,
+            .gap = gap, .image_velocity = offset->velocity, .weight = c->weight, .history = n->history ? &n->history[k] : NULL,
             .image = n->many_images ? c->image : 0 };
     }
     return true;

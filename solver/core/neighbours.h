@@ -15,7 +15,7 @@ struct candidate {
     int i, j;                       /* tag of i not above tag of j */
     int offset;                     /* which image of j: index into offsets */
     uint32_t image;                 /* key of that image in the never-remapped lattice */
-    double touch, reach;            /* a_i + a_j, and the range squared [L, L^2] */
+    double touch, reach, weight;    /* a_i + a_j, the range squared, and the share booked here: core/pairs.h [L, L^2, 1] */
 };
 
 struct image_offset { int shift[3]; vec3 position, velocity; };
@@ -24,7 +24,7 @@ struct neighbours {
     double range[MAX_SPECIES][MAX_SPECIES];     /* between centres, the farthest of all forces [L] */
     double largest_range;
     double skin;                    /* [L]; grows where lists are short-lived and shrinks where they last */
-    bool keeps_history;
+    bool keeps_history, foreign;    /* foreign: another program makes the list and wraps particles; it is only looked through */
     bool many_images;               /* an edge is below twice the range: pairs may see several images */
     struct candidate *candidate;
     vec3 *history;                  /* one per candidate; NULL unless a force asked */

@@ -16,6 +16,7 @@ struct observer {
     int64_t every;                              /* due at every so many steps, step 0 included; 0: at the steps of `at` */
     int64_t *at;                                /* ascending, NULL unless every is 0 */
     int at_count, at_next;
+    bool reads_pairs;                           /* needs the near pairs of the moment */
     bool measures;                              /* needs the stress of the evaluation just made */
     bool (*open)(struct observer *self, const struct suspension *s, const struct destination *to, struct error *e);
     bool (*observe)(struct observer *self, const struct suspension *s, struct error *e);

@@ -214,7 +214,7 @@ static bool surely_stable(const struct suspension *s, double dt)
 double step_advised(const struct suspension *s)
 {
     const struct particles *p = &s->particles;
-    const int touching = p->count - 1 < 12 ? p->count - 1 : 12;
+    const int touching = p->count > 0 && p->count - 1 < 12 ? p->count - 1 : 12;     /* a crowd where particles are yet to be placed */
     double dt = s->box.rate > 0.0 ? 1e-3 / s->box.rate : INFINITY;
     for (int a = 0; a < p->species_count; a++) {
         double drag[2];

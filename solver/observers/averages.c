@@ -143,7 +143,7 @@ struct observer *averages_new(struct settings *s, struct suspension *of, struct 
     struct averages *o = calloc(1, sizeof *o);
     if (!o)
         return error_out_of_memory(e), NULL;
-    o->base = (struct observer){ .measures = true, .open = averages_open, .observe = averages_observe, .remember = averages_remember,
+    o->base = (struct observer){ .measures = true, .reads_pairs = true, .open = averages_open, .observe = averages_observe, .remember = averages_remember,
                                  .close = averages_close };
     o->base.every = settings_whole(s, "every", 1, INT64_MAX, e);
     o->plane = plane_of(&of->box);

@@ -72,6 +72,7 @@ struct observer *contacts_new(struct settings *s, struct suspension *of, struct 
         return NULL;
     o->rows.base.open = contacts_open;
     o->rows.base.observe = contacts_observe;
+    o->rows.base.reads_pairs = true;
     if (!error_raised(e) && !(of->neighbours.range[0][0] > 0.0))
         settings_refuse(s, "", e, "needs a force between pairs: without one nobody knows who touches");
     return &o->rows.base;

@@ -111,5 +111,6 @@ struct observer *temperature_new(struct settings *s, struct suspension *of, stru
         return NULL;
     o->base.open = temperature_open;
     o->base.observe = temperature_observe;
+    o->base.reads_pairs = true;
     return &o->base;
 }

@@ -294,8 +294,11 @@ void checkpoint_watch(void)
     action.sa_flags = (int)SA_RESETHAND;            /* a second Ctrl-C ends the program at once */
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
+    sigaction(SIGUSR1, &action, NULL);
     signal(SIGXFSZ, SIG_IGN);                       /* a limit on file sizes then shows as an error of the file, which we name */
 }
+
+bool checkpoint_wanted(void) { return stop_wanted != 0; }
 
 bool checkpoint_keep(struct checkpoint *c, bool last, struct error *e)
 {

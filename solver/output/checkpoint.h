@@ -26,8 +26,10 @@ struct checkpoint {
     size_t read_size;
 };
 
-/* From now on SIGINT and SIGTERM let the step be finished, a checkpoint be written, and the run end with ERROR_INTERRUPTED. */
+/* From now on SIGINT, SIGTERM and SIGUSR1 (a queue's warning) let the step be finished, a checkpoint be written, and the run end with ERROR_INTERRUPTED. */
 void checkpoint_watch(void);
+
+bool checkpoint_wanted(void);       /* somebody wants the run to stop */
 
 /* Reads and checks `checkpoint.bin` if the run is a resumed one; changes nothing else. */
 bool checkpoint_read(struct checkpoint *c, struct error *e);
