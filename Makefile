@@ -14,8 +14,9 @@ BASE     := -std=c11 -D_XOPEN_SOURCE=700 -ffp-contract=off -fno-math-errno $(WAR
 SOLVER   := $(wildcard solver/*.c solver/*/*.c)
 GATE     := $(wildcard validation/*.c validation/checks/*.c validation/theory/*.c)
 TESTS    := $(wildcard tests/*.c)
+ENGINE   := $(wildcard tools/engine/*.c)
 objects   = $(1:%.c=$B/obj/%.o)
-PROGRAMS := $B/shear $B/gate $B/lammps-candidate $B/lammps-host
+PROGRAMS := $B/shear $B/gate $B/lammps-candidate $B/lammps-host $B/shear-lammps $B/compare-checkpoints
 # Takes part in the jobs of a `make -jN` that called it; else uses all cores.
 PARALLEL  = --no-print-directory $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(JOBS))
 
@@ -43,7 +44,7 @@ test: ## build and run the unit tests
 $B/commit: FORCE
 	@mkdir -p $(@D)
 	@echo '$(COMMIT)' | cmp -s - $@ || echo '$(COMMIT)' >$@
-$B/obj/solver/shear.o $B/obj/solver/describe.o $B/obj/validation/gate.o: $B/commit
+$B/obj/solver/shear.o $B/obj/solver/describe.o $B/obj/validation/gate.o $B/obj/tools/engine/main.o: $B/commit
 FORCE:
 
 $B/obj/solver/%.o: solver/%.c
@@ -56,7 +57,15 @@ $B/obj/validation/%.o: validation/%.c
 
 $B/obj/tests/%.o: tests/%.c
 	@mkdir -p $(@D)
-	$(CC) $(BASE) $(CFLAGS) -Isolver -Ivalidation -Itests -c $< -o $@
+	$(CC) $(BASE) $(CFLAGS) -Isolver -Ivalidation -Itests -Itools/engine -c $< -o $@
+
+# LAMMPS as a library, and MPI; as system headers, for their warnings are not ours to mend.
+HOST_CFLAGS = $(patsubst -I%,-isystem %,$(shell pkg-config --cflags liblammps ompi-c))
+HOST_LIBS   = $(shell pkg-config --libs liblammps ompi-c)
+
+$B/obj/tools/engine/%.o: tools/engine/%.c
+	@mkdir -p $(@D)
+	$(CC) $(BASE) $(CFLAGS) -DSHEAR_VERSION='"$(VERSION) ($(COMMIT))"' -Isolver -Itools/engine $(HOST_CFLAGS) -c $< -o $@
 
 $B/shear: $(call objects,$(SOLVER))
 	$(CC) $(CFLAGS) $^ -o $@ -ljansson -lm
@@ -76,7 +85,17 @@ $B/lammps-candidate: tools/lammps/candidate.py
 	@mkdir -p $(@D)
 	install -m 755 $< $@
 
-$B/unit-tests: $(call objects,$(TESTS) $(filter-out solver/shear.c,$(SOLVER)) $(filter-out validation/gate.c,$(GATE)))
+$B/obj/tools/compare/%.o: tools/compare/%.c
+	@mkdir -p $(@D)
+	$(CC) $(BASE) $(CFLAGS) -c $< -o $@
+
+$B/shear-lammps: $(call objects,$(ENGINE) $(filter-out solver/shear.c,$(SOLVER)))
+	$(CC) $(CFLAGS) $^ -o $@ -ljansson $(HOST_LIBS) -lm
+
+$B/compare-checkpoints: $B/obj/tools/compare/checkpoints.o
+	$(CC) $(CFLAGS) $^ -o $@ -lm
+
+$B/unit-tests: $(call objects,$(TESTS) tools/engine/refuse.c $(filter-out solver/shear.c,$(SOLVER)) $(filter-out validation/gate.c,$(GATE)))
 	$(CC) $(CFLAGS) $^ -o $@ -lcunit -ljansson -lgsl -lgslcblas -lm
 
 # ---- measuring: each prints its figure on its last line and fails when its bar is not met ----
@@ -89,7 +108,8 @@ coverage: ## lines of solver/ that tests and fast tier execute (at least 90 %)
 
 # gcc warns falsely of its own instrumentation, so here alone warnings are no errors.
 sanitize: all ## unit tests and the gate's cases under address and undefined-behaviour sanitizers
-	@$(MAKE) $(PARALLEL) B=$B/sanitize CFLAGS="-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -Wno-error" $B/sanitize/unit-tests $B/sanitize/shear $B/sanitize/gate $B/sanitize/lammps-candidate
+	@$(MAKE) $(PARALLEL) B=$B/sanitize CFLAGS="-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -Wno-error" $B/sanitize/unit-tests $B/sanitize/shear $B/sanitize/gate $B/sanitize/lammps-candidate \
+		$B/sanitize/shear-lammps $B/sanitize/compare-checkpoints
 	$B/sanitize/unit-tests
 	$B/sanitize/gate run --candidate "$B/sanitize/shear --evaluate" --jobs $(JOBS) --work $B/sanitize/cases --report $B/sanitize/report
 	@echo "sanitize: clean"
@@ -113,6 +133,12 @@ bench: all ## particle-steps per second and instructions per particle-step, besi
 scaling: all ## time of a step against the number of spheres, 1e2 to 1e5 (exponent at most 1.08)
 	@tools/bench/scaling.sh $B
 
+engine: all $B/unit-tests ## shear-lammps against shear, pathwise on 1, 2 and 4 ranks; restart; broken engines must be seen
+	@tools/engine/measure.sh $B
+
+engine-cost: all ## a step of shear-lammps against one of shear, and on 2 ranks against 1 (quiet machine)
+	@tools/engine/cost.sh $B
+
 second-opinion: ## LAMMPS's lubrication and noise styles, coefficient by coefficient (docs/lammps.md)
 	@python3 tools/lammps/coefficients.py
 
@@ -125,5 +151,5 @@ help: ## this list
 clean: ## remove build/
 	rm -rf $B
 
-.PHONY: all setup validate test lines coverage sanitize memcheck scenes faults calibrate bench scaling second-opinion work-precision help clean FORCE
--include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS)))
+.PHONY: all setup validate test lines coverage sanitize memcheck scenes faults calibrate bench scaling engine engine-cost second-opinion work-precision help clean FORCE
+-include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS) $(ENGINE) tools/compare/checkpoints.c))

@@ -102,6 +102,7 @@ row() { # name state scene steps lammps-physics lammps-steps remark
 
 declare -A counted
 prepare mixed
+[ -z "${PREPARE_ONLY:-}" ] || exit 0
 prepare equal
 : >"$work/headline"
 {

@@ -39,8 +39,9 @@ user_seconds() { local TIMEFORMAT=%U; { time "$shear" "$1" -o "$work/out" >"$wor
 median() { sort -g | awk '{ v[NR] = $1 } END { print (v[int((NR + 1) / 2)] + v[int(NR / 2) + 1]) / 2 }'; }
 
 declare -A steps seen
+for n in $sizes; do prepare "$n"; done
+[ -z "${PREPARE_ONLY:-}" ] || exit 0
 for n in $sizes; do
-    prepare "$n"
     steps[$n]=$(awk -v n="$n" -v p="$particle_steps" 'BEGIN { printf "%d", p / n }')
     scene "$n" 10 "\"file\": \"$n.csv\"" >"$work/$n-short.json"
     scene "$n" $((steps[$n] + 10)) "\"file\": \"$n.csv\"" >"$work/$n-long.json"
