@@ -4,7 +4,8 @@
 # On one rank against shear (user seconds, S2 and S3 of `make bench` and its state; bars 2.5 and 2.0 times shear's).
 # On two ranks against one (wall seconds, S3 with uniform numbers at rate 9e-2, the states of `make scaling`; bar: efficiency t_1/(2 t_2) at
 # least 0.85 at 1e5 spheres). Each time is that of a long run less that of a short one, so that starting drops out, all programs in turn: medians
-# of user seconds, the least of wall seconds (ranks wait for each other, so whatever else runs adds to these). ONLY_RANKS=1 leaves out the first part. Then the model
+# of user seconds, the least of wall seconds (ranks wait for each other, so whatever else runs adds to these). ONLY_RANKS=1 leaves out the
+# first part. Then the model
 # t = a n^p (+ b n^(2/3) on several ranks) per step, n spheres per rank: p above 1 is the cache, b the border.
 set -euo pipefail
 cd "$(dirname "$0")/../.."

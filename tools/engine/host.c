@@ -332,35 +332,28 @@ static int most_contacts(const struct particles *p)
     return (int)ceil(2.0 / (1.0 - sqrt(1.0 - sine * sine)));
 }
 
+/* This rank's suspension: the scene's, but for particles and lists; room that is there already is used again. */
 static void set_up_here(struct engine *g)
 {
     struct suspension *s = &g->here;
-    struct neighbours before = s->neighbours;
-    vec3 *anchor = s->particles.anchor;
-    int (*image)[3] = s->particles.image;
+    struct neighbours *n = &s->neighbours;
+    const struct neighbours *scene = &g->scene->neighbours, before = *n;
+    vec3 *const anchor = s->particles.anchor;
+    int (*const image)[3] = s->particles.image;
     *s = *g->scene;
-    s->particles = (struct particles){ .species_count = s->particles.species_count, .species = g->species, .anchored = s->particles.anchored,
+    s->particles = (struct particles){ .species_count = g->scene->particles.species_count, .anchored = g->scene->particles.anchored,
                                        .anchor = anchor, .image = image };
     memcpy(s->particles.kind, g->scene->particles.kind, sizeof s->particles.kind);
-    struct neighbours *n = &s->neighbours;
-    n->candidate = before.candidate;
-    n->history = before.history;
-    n->offset = before.offset;
-    n->room = before.room;
-    n->listed_at = NULL;
-    n->count = 0;
-    n->near = before.near;
-    n->near.keeps_resistance = g->scene->neighbours.near.keeps_resistance;
-    n->foreign = true;
-    n->largest_range = 0.0;
+    *n = before;
+    memcpy(n->range, scene->range, sizeof n->range);
     for (int k = 0; k < MAX_SPECIES * MAX_SPECIES; k++)
         n->largest_range = fmax(n->largest_range, n->range[k / MAX_SPECIES][k % MAX_SPECIES]);
+    n->keeps_history = scene->keeps_history;
+    n->near.keeps_resistance = scene->near.keeps_resistance;
+    n->foreign = true;
     n->made = 1;
-    if (!n->offset) {
-        n->offset_count = 27;
-        n->offset = grown(g, NULL, 27 * sizeof *n->offset);
-    }
     n->offset_count = 27;
+    n->offset = grown(g, n->offset, 27 * sizeof *n->offset);
     for (int k = 0; k < 27; k++)
         memcpy(n->offset[k].shift, (const int[3]){ k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1 }, sizeof n->offset[k].shift);
     g->slots = n->keeps_history ? most_contacts(&s->particles) : 0;
@@ -503,7 +496,7 @@ void host_advance(struct engine *g, int64_t to, bool measuring)
     g->measures = measuring;
     stress_clear(&g->here.stress);
     command(g, "run %lld pre %s post no start %lld stop %lld", (long long)(to - g->here.step), fresh ? "yes" : "no", (long long)g->first_step,
-            (long long)g->first_step + 1000000000);
+            (long long)g->first_step + (1LL << 40));    /* farther than any run; a power of two does not round the tilt */
 }
 
 /* ---- looking ---- */
