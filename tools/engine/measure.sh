@@ -59,7 +59,8 @@ for ((k = 0; k < tried; k++)); do
         echo "NOT SEEN   $name"
     else
         seen=$((seen + 1))
-        echo "seen       $name: $(grep -m1 -o '[a-z_]*\.csv: measured [^,]*\|position *[^ ]*\|force *[0-9][^ ]*\|rank [0-9]*: .*' "$work/said" | head -1)"
+        echo "seen       $name: $(grep -o 'rank [0-9]*: .*\|[0-9]* and [0-9]* with a history: not the same\|force  *[0-9].*\|[a-z_]*\.csv: measured [^,]*' "$work/said" |
+            awk '$1 != "force" || $2 > 1e-10' | head -1)"
     fi
     rm -rf "$broken"
 done
