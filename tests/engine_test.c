@@ -9,13 +9,13 @@
 #include <string.h>
 #include <sys/wait.h>
 
-/* Friction, lubrication, both noises, pressed together and sheared fast: the cell is remapped near step 300. */
+/* Friction, lubrication, both noises, pressed together and sheared fast: the cell is remapped near step 250 (by the engine at 277). */
 static const char scene[] =
     "{ \"about\": \"test\", \"seed\": 7, \"fluid\": { \"viscosity\": 0.1, \"kT\": 0.017 },\n"
     "  \"box\": { \"lengths\": [8.0, 7.0, 9.0], \"periodic\": [true, true, true] },\n"
     "  \"shear\": [ { \"flow\": \"x\", \"gradient\": \"y\", \"rate\": -9.0 } ],\n"
     "  \"species\": [ { \"name\": \"small\", \"radius\": 1.0, \"density\": 0.1 }, { \"name\": \"large\", \"radius\": 1.4, \"density\": 0.1 } ],\n"
-    "  \"start\": { \"random\": { \"phi\": 0.5, \"count\": 60, \"volume_shares\": [0.5, 0.5] }, \"thermal\": true, \"time\": 0.0575 },\n"
+    "  \"start\": { \"random\": { \"phi\": 0.5, \"count\": 60, \"volume_shares\": [0.5, 0.5] }, \"thermal\": true, \"time\": 0.059 },\n"
     "  \"forces\": { \"contact\": { \"normal_stiffness\": 1e4, \"tangential_stiffness\": 2857.0, \"friction\": 0.5, \"lever\": \"contact\" },\n"
     "    \"tether\": { \"large\": { \"stiffness\": 1.0 } }, \"drag\": { \"torque\": true }, \"drag_noise\": { \"distribution\": \"gaussian\" },\n"
     "    \"lubrication\": { \"inner_gap\": 1e-3, \"outer_gap\": 0.05, \"rotation_correction\": \"exact\" },\n"

@@ -70,15 +70,19 @@ static int64_t next_look(const struct simulation *sim, int64_t after)
     return next;
 }
 
+/* The cell is remapped at multiples of this only, so that no clock and no observer has a say in it. */
+static int64_t steps_to_turn(const struct suspension *s)
+{
+    return s->box.rate > 0.0 ? (int64_t)fmin(fmax(1.0, most_strain / (s->box.rate * s->dt)), 1e15) : INT64_C(1) << 50;
+}
+
 /* At most so many steps at a time, in multiples of 64 so that the progress line is shown. */
 static int64_t next_stop(const struct engine *g, int64_t after)
 {
     const struct suspension *s = g->scene;
-    double most = g->pace > 0.0 ? most_seconds / g->pace : 64.0;
-    if (s->box.rate > 0.0)
-        most = fmin(most, most_strain / (s->box.rate * s->dt));
-    const int64_t step = most < 64.0 ? (int64_t)fmax(1.0, most) : (int64_t)fmin(most / 64.0, 1e6) * 64;
-    return after - after % step + step;
+    const double most = g->pace > 0.0 ? most_seconds / g->pace : 64.0;
+    const int64_t step = most < 64.0 ? (int64_t)fmax(1.0, most) : (int64_t)fmin(most / 64.0, 1e6) * 64, turn = steps_to_turn(s);
+    return sooner(after - after % step + step, after - after % turn + turn);
 }
 
 static struct engine *leading;              /* there is one engine in a process */
@@ -106,7 +110,7 @@ static bool engine_step(const struct dynamics *self, struct suspension *s, bool 
     box_set_time(&s->box, s->start_time + (double)to * s->dt);
     box_set_time(&g->shared_box, s->box.time);
     *relisted = false;                      /* every rank has judged the steps on its own */
-    const bool remap = box_wants_remap(&g->shared_box);
+    const bool remap = to % steps_to_turn(s) == 0 && box_wants_remap(&g->shared_box);
     if (to == look || remap || checkpoint_wanted())
         tell(g, ORDER_COLLECT, 0, pairs || remap || checkpoint_wanted());
     g->shared = !remap;
