@@ -2,8 +2,8 @@
 # make engine: shear-lammps against shear, pathwise, and broken engines against the unit tests.
 #
 # 1000 spheres at phi 0.5 with friction, lubrication, drag and noise, pressed together by 0.44 strains of shear (1100 contacts
-# with a history); from that checkpoint both programs go on for 100 and for 1000 steps, the cell being remapped at the 600th. Bars: forces, torques,
-# spins and histories at step 100 to 1e-10 of the largest, positions at step 1000 to 1e-9 (they measure 1e-12 and 3e-13: rounding of
+# with a history); from that checkpoint both programs go on for 100 and for 1000 steps, the cell being remapped at the 400th (600th). Bars: forces, torques,
+# spins and histories at step 100 to 1e-10 of the largest, positions at step 1000 to 1e-9 (they measure 2e-12 and 2e-13: rounding of
 # wrapped positions and the order of sums). A run that was stopped and went on on other ranks: positions to 1e-12.
 # Faults: each of faults.json is built and must fail the suite `engine` of the unit tests. SKIP_FAULTS=1 leaves them out, ONLY_FAULTS=1 all else.
 set -euo pipefail
