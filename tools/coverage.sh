@@ -4,7 +4,7 @@ set -eu
 cd "$(dirname "$0")/.."
 b=build/coverage
 make --no-print-directory -s -j"$(nproc)" >/dev/null
-make --no-print-directory -s -j"$(nproc)" B=$b CFLAGS="-O1 -g --coverage" $b/unit-tests $b/shear $b/gate $b/lammps-candidate >/dev/null
+make --no-print-directory -s -j"$(nproc)" B=$b CFLAGS="-O1 -g --coverage" $b/unit-tests $b/shear $b/gate $b/lammps-candidate $b/shear-lammps $b/compare-checkpoints >/dev/null
 find $b -name '*.gcda' -delete
 $b/unit-tests >$b/unit-tests.txt
 $b/gate run --candidate "$b/shear --evaluate" --jobs "$(nproc)" --work $b/cases --report $b/report >$b/gate.txt
