@@ -114,7 +114,7 @@ prepare equal
     row 'S1 contact+drag'          mixed s1 30000 s1-langevin 6000 'same physics: gran/hooke, fix langevin on temp/deform'
     row 'S1 contact+drag'          mixed s1 30000 s1-viscous 15000 'different physics: gran/hooke, fix viscous (drag towards rest)'
     row 'S2 friction+lub+drag'     mixed s2 4000 s2-poly      600 'different physics: gran/hooke/history + lubricate/poly'
-    row 'S2 equal spheres'         equal s2 4000 s2-equal    2000 'different physics (terms in h ln h and in the strain rate): gran/hooke/history + lubricate'
+    row 'S2 equal spheres'         equal s2 4000 s2-equal    2000 'different physics (C_11, C_12; spins in shear): gran/hooke/history + lubricate'
     row 'S3 S2+noise, gaussian'    mixed s3 1500 s3-poly      300 'different physics: s2-poly + brownian/poly (uniform numbers)'
     row 'S3 S2+noise, uniform'     mixed s3-uniform 2000 s3-poly 300 'different physics: s2-poly + brownian/poly (uniform numbers)'
 } | tee "$B/bench.txt.new"

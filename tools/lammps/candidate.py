@@ -102,7 +102,7 @@ class Task:
              "fix langevin damps spins towards zero, not towards half the vorticity: in shear \"torque\" must be false")
         if not self.own:
             need("lubrication" not in self.forces,
-                 "lubricate has terms in h ln h and takes the strain rate out, lubricate/poly breaks the third law at unequal radii: no equivalent of \"lubrication\"")
+                 "lubricate has other spin terms and wrong spins in shear, lubricate/poly breaks the third law at unequal radii: no equivalent of \"lubrication\"")
         need(self.forces.get("lubrication", {}).get("rotation_correction", "none") == "none", "lubricate has no rotation correction")
         own_law = self.own is not None
         for noise in NOISES:
