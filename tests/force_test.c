@@ -1,6 +1,7 @@
 /* Forces, steps and noise of the solver, on what can be worked out by hand. */
 #include "suite.h"
 
+#include "core/noise.h"
 #include "core/step_limit.h"
 #include "scenes.h"
 

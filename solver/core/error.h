@@ -6,6 +6,7 @@
 #define CORE_ERROR_H
 
 #include <stdbool.h>
+#include <stddef.h>
 
 enum { ERROR_RUN = 1, ERROR_INPUT = 2, ERROR_UNSUPPORTED = 77, ERROR_INTERRUPTED = 130 };      /* exit codes */
 

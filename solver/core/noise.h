@@ -8,7 +8,7 @@
 #ifndef CORE_NOISE_H
 #define CORE_NOISE_H
 
-#include "core/vec3.h"
+#include "core/suspension.h"
 
 #include <Random123/philox.h>
 #include <stdint.h>
@@ -18,8 +18,6 @@ enum noise_law { NOISE_GAUSSIAN, NOISE_UNIFORM };
 
 /* One stream per thing that draws: two streams never share a number. */
 enum noise_stream { NOISE_START, NOISE_THERMAL, NOISE_DRAG, NOISE_LUBRICATION };
-
-struct noise_key { uint32_t seed, realisation; };
 
 /* What the number is for. `j` is 0 for one particle; `image` tells images of the same pair apart, 0 in large boxes. */
 struct noise_place { enum noise_stream stream; int64_t step; int i, j; uint32_t image; };

@@ -6,7 +6,6 @@
 
 #include "core/force.h"
 #include "core/neighbours.h"
-#include "core/noise.h"
 
 enum { MAX_FORCES = 16 };
 
@@ -15,7 +14,7 @@ struct suspension {
     double kT;                              /*      [M L^2/T^2] */
     int dimensions;
     bool rotates;                           /* particles spin */
-    struct noise_key key;
+    struct noise_key { uint32_t seed, realisation; } key;
     struct box box;
     struct particles particles;
     struct neighbours neighbours;

@@ -8,6 +8,7 @@
  * so that <F F> dt = 2 kT (drag coefficient): fluctuation and dissipation balance at temperature kT.
  * Source: Ermak & McCammon (1978); Li (2026) eq 3.20, 3.21.
  */
+#include "core/noise.h"
 #include "forces/drag.h"
 #include "forces/forces.h"
 

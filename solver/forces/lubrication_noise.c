@@ -11,6 +11,7 @@
  * Source: Li (2026) eq 3.22-3.24. The minus before the last root is the ansatz of her eq 3.28; her eq 3.24 prints a plus, for which
  * <T_i T_j> would come out as 2 B_1 B_2/Y_A - C_12 instead of C_12: four times too large for equal spheres.
  */
+#include "core/noise.h"
 #include "forces/lubrication.h"
 #include "forces/forces.h"
 

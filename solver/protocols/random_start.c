@@ -7,6 +7,7 @@
  *
  * Source: FIRE, Bitzek et al. (2006), their parameters. Reaches volume fractions of about 0.63; denser crowds jam.
  */
+#include "core/noise.h"
 #include "protocols/protocols.h"
 
 #include <stdlib.h>
