@@ -215,9 +215,10 @@ def physics(t, state, forces):
             i, j, *rest = c.split()
             put(" ".join(["pair_coeff", i, j, *([style.split()[0]] if hybrid else []), *rest]))
     # The skin costs neighbours, but LAMMPS also rebuilds its lists when a corner of the sheared cell has moved half of it.
-    if t.own == "theory":   # reads the same list up to the outer cut-off: half the skin covers it, and ten steps move a sphere far less than the rest
-        skin = 2 * max(a) * t.forces.get("lubrication", {}).get("outer_gap", 0)
-        put(f"neighbor {skin + 0.2 * min(a)!r} bin\nneigh_modify every 10 delay 0 check no\nfix host all external pf/callback 1 1")
+    if t.own == "theory":   # reads the same list up to the outer cut-off; the rest of the skin lasts while no sphere moves by half of it
+        reach, rest = 2 * max(a) * t.forces.get("lubrication", {}).get("outer_gap", 0), 0.2 * min(a)
+        fast = 8 * math.sqrt(t.kT / min(t.mass)) + 20 * abs(t.rate) * max(a)
+        put(f"neighbor {reach + rest!r} bin\nneigh_modify every {min(200, max(10, int(0.4 * rest / (fast * t.dt))))} delay 0 check no\nfix host all external pf/callback 1 1")
     else:
         put(f"neighbor {max(0.3 * min(a), min(1.2 * min(a), 0.08 * t.edge[1]))!r} bin\nneigh_modify every 1 delay 0 check yes")
     put(f"# shear: dU_x/dy; `remap v` changes the velocity of what crosses a face\nfix flow all deform 1 xy erate {t.rate!r} remap v flip no")
@@ -272,7 +273,9 @@ def write_parameters(t, out):
     style = pair_styles(t, t.forces)[0][0].split()[0] if "contact" in t.forces else "zero"
     flags = [int(n in t.forces) for n in ("drag", "lubrication", "drag_noise", "lubrication_noise")]
     flags.insert(1, int(t.forces.get("drag", {}).get("torque", False)))
-    values = [t.eta, t.rate, t.dt, t.kT, t.scene.get("seed", 1), *flags, l.get("inner_gap", 1), l.get("outer_gap", 0), t.stress_every, t.first, style]
+    need(len({t.forces[n]["distribution"] for n in NOISES if n in t.forces}) < 2, "the host draws all its numbers from one distribution")
+    uniform = int(any(t.forces[n]["distribution"] == "uniform" for n in NOISES if n in t.forces))
+    values = [t.eta, t.rate, t.dt, t.kT, t.scene.get("seed", 1), t.scene.get("realisation", 0), uniform, *flags, l.get("inner_gap", 1), l.get("outer_gap", 0), t.stress_every, t.first, style]
     with open(os.path.join(out, "host.parameters"), "w") as f:
         f.write("\n".join(str(v) for v in values) + "\n")
 
