@@ -8,7 +8,8 @@
  * in their own variables), the rest is written here from components; nothing of solver/ takes part. One process, no MPI.
  *
  * PARAMETERS, one per line: viscosity; rate (dU_x/dy); dt; kT, seed, realisation, 1 for uniform numbers; drag torque lubrication drag_noise
- * lubrication_noise as 0 or 1; inner and outer gap; every and first step of the stress; name of the pair style whose list is read.
+ * lubrication_noise as 0 or 1; inner and outer gap; repulsion: 1 if by energy, strength (0: none), kappa over a_1 + a_2, cut-off over kappa;
+ * every and first step of the stress; name of the pair style whose list is read. host.stress: step, nine sums of lubrication, nine of repulsion.
  *
  * Noise of a pair: with the covariance (2 kT/dt) C of (F_1.s, T_1.t, T_2.t), s across n and t = n x s,
  *
@@ -37,6 +38,7 @@ struct host {
     unsigned seed, realisation;
     int uniform, drag, torque, lubrication, drag_noise, lubrication_noise;
     struct theory_lubrication law;
+    struct theory_repulsion repulsion;
     long every, first;
     char style[80];
     FILE *stress;
@@ -140,11 +142,26 @@ static void one_body(const struct host *h, int64_t step, int count, const int *t
     }
 }
 
+static void repel(const struct host *h, double **x, const double *a, int one, int two, double **f, const int *owner, const int *tag, double stress[9])
+{
+    struct theory_sphere pair[2] = { { .radius = a[one] }, { .radius = a[two] } };
+    struct theory_pair out;
+    for (int k = 0; k < 3; k++) {
+        pair[0].x[k] = x[one][k];
+        pair[1].x[k] = x[two][k];
+    }
+    theory_repulsion_pair(&h->repulsion, pair, &out);
+    add(1, out.force[0], f[owner[tag[one]]]);
+    add(1, out.force[1], f[owner[tag[two]]]);
+    for (int k = 0; k < 9; k++)
+        stress[k] += out.stress[k / 3][k % 3];
+}
+
 /*
  * With `newton off` a pair across a face is listed at both of its ends, each time with a ghost of the other. One process owns all particles, so
  * the end with the smaller tag acts on both: on the ghost's owner, whose force is the same.
  */
-static void pairs(const struct host *h, int64_t step, int local, const int *owner, double **x, double **f, double stress[9])
+static void pairs(const struct host *h, int64_t step, int local, const int *owner, double **x, double **f, double stress[18])
 {
     double **v = vectors(h, "v"), **w = vectors(h, "omega"), **torque = vectors(h, "torque"), *a = lammps_extract_atom(h->lammps, "radius");
     const int *tag = lammps_extract_atom(h->lammps, "id");
@@ -162,11 +179,10 @@ static void pairs(const struct host *h, int64_t step, int local, const int *owne
                 n[k] = x[two][k] - x[one][k];
                 dU[k] = v[two][k] - v[one][k];
             }
-            const double far = (a[one] + a[two]) * (1 + h->law.outer_gap / 2);
-            if (dot(n, n) > far * far * (1 + 1e-12))
-                continue;
-            const double r = sqrt(dot(n, n));
-            if (2 * (r - a[one] - a[two]) / (a[one] + a[two]) > h->law.outer_gap)
+            const double sizes = a[one] + a[two], r = sqrt(dot(n, n));
+            if (h->repulsion.strength > 0)
+                repel(h, x, a, one, two, f, owner, tag, stress + 9);
+            if (!h->lubrication || 2 * (r - sizes) / sizes > h->law.outer_gap)
                 continue;
             for (int k = 0; k < 3; k++)
                 n[k] /= r;
@@ -192,7 +208,7 @@ static void pairs(const struct host *h, int64_t step, int local, const int *owne
 static void callback(void *self, int64_t step, int local, int *tag, double **x, double **f)
 {
     struct host *h = self;
-    double stress[9] = { 0 };
+    double stress[18] = { 0 };
     if (!h->owner)
         h->owner = malloc((size_t)(local + 1) * sizeof *h->owner);      /* tags are 1 to `local`: one process owns them all */
     for (int i = 0; i < local; i++)
@@ -201,11 +217,11 @@ static void callback(void *self, int64_t step, int local, int *tag, double **x, 
         f[i][0] = f[i][1] = f[i][2] = 0;
     if (h->drag)
         one_body(h, step, local, tag, x, f);
-    if (h->lubrication)
+    if (h->lubrication || h->repulsion.strength > 0)
         pairs(h, step, local, h->owner, x, f, stress);
     if (h->stress && h->every > 0 && step >= h->first && step % h->every == 0) {
         fprintf(h->stress, "%ld", (long)step);
-        for (int k = 0; k < 9; k++)
+        for (int k = 0; k < 18; k++)
             fprintf(h->stress, " %.17g", stress[k]);
         fprintf(h->stress, "\n");
     }
@@ -214,13 +230,16 @@ static void callback(void *self, int64_t step, int local, int *tag, double **x, 
 static int read_parameters(struct host *h, const char *path)
 {
     FILE *f = fopen(path, "r");
-    const int read = f ? fscanf(f, "%lf %lf %lf %lf %u %u %d %d %d %d %d %d %lf %lf %ld %ld %79s", &h->viscosity, &h->rate, &h->dt, &h->kT, &h->seed,
+    int by_energy = 0;
+    const int read = f ? fscanf(f, "%lf %lf %lf %lf %u %u %d %d %d %d %d %d %lf %lf %d %lf %lf %lf %ld %ld %79s", &h->viscosity, &h->rate, &h->dt, &h->kT, &h->seed,
                                 &h->realisation, &h->uniform, &h->drag, &h->torque, &h->lubrication, &h->drag_noise, &h->lubrication_noise, &h->law.inner_gap, &h->law.outer_gap,
+                                &by_energy, &h->repulsion.strength, &h->repulsion.kappa_factor, &h->repulsion.cutoff,
                                 &h->every, &h->first, h->style) : 0;
     if (f)
         fclose(f);
     h->law.viscosity = h->viscosity;
-    return read == 17;
+    h->repulsion.by_energy = by_energy;
+    return read == 21;
 }
 
 int main(int argc, char **argv)
@@ -228,7 +247,7 @@ int main(int argc, char **argv)
     struct host h = { .lammps = NULL };
     char line[2000];
     if (argc != 3 || !read_parameters(&h, argv[2])) {
-        fprintf(stderr, argc == 3 ? "lammps-host: %s does not hold the seventeen parameters\n" : "usage: lammps-host DECK PARAMETERS\n", argv[argc - 1]);
+        fprintf(stderr, argc == 3 ? "lammps-host: %s does not hold the twenty-one parameters\n" : "usage: lammps-host DECK PARAMETERS\n", argv[argc - 1]);
         return 2;
     }
     FILE *deck = fopen(argv[1], "r");

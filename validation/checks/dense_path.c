@@ -129,7 +129,7 @@ void dense_path(struct check_run *run)
     scene_set(s.scene, "run", json_pack("{sI}", "steps", (json_int_t)steps));
     scene_set(s.scene, "output.states.every", json_integer((json_int_t)every));
     scene_set(s.scene, "output.stress.every", json_integer((json_int_t)every / 10));
-    if (dense_ask_both(run, "path", &s, out)) {
+    if (dense_ask_both(run, "path", &s, out, NULL)) {
         const bool friction = scene_number(s.scene, "forces.contact.friction", 0) > 0;
         const char *const origin[4] = { "contact_normal", "kinetic", friction ? "contact_tangential" : NULL,
                                         scene_get(s.scene, "forces.lubrication") ? "lubrication" : NULL };
