@@ -133,6 +133,12 @@ bench: all ## particle-steps per second and instructions per particle-step, besi
 scaling: all ## time of a step against the number of spheres, 1e2 to 1e5 (exponent at most 1.08)
 	@tools/bench/scaling.sh $B
 
+VISCOSITIES := $(shell cd validation/cases/6-dense && echo viscosities-* | tr ' ' ',')
+golden: all ## sheared viscosities, code against code: hours of two cores, kept row by row in golden/viscosities; goes on where it stopped
+	$B/gate run --candidate "$B/shear --evaluate" --tier full --case $(VISCOSITIES) --jobs $(JOBS) --keep golden/viscosities --work $B/golden-cases --report $B/golden-report
+	@cd golden/viscosities && gnuplot plot.gp
+	@echo "golden: $$(grep -c ',viscosity,' golden/viscosities/*-table.csv | awk -F: '{ n += $$2 } END { print n }') rows agree, see golden/viscosities and docs/viscosities.md"
+
 engine: all $B/unit-tests ## shear-lammps against shear, pathwise on 1, 2 and 4 ranks; restart; broken engines must be seen
 	@tools/engine/measure.sh $B
 
@@ -151,5 +157,5 @@ help: ## this list
 clean: ## remove build/
 	rm -rf $B
 
-.PHONY: all setup validate test lines coverage sanitize memcheck scenes faults calibrate bench scaling engine engine-cost second-opinion work-precision help clean FORCE
+.PHONY: all setup validate test lines coverage sanitize memcheck scenes faults calibrate bench scaling golden engine engine-cost second-opinion work-precision help clean FORCE
 -include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS) $(ENGINE) tools/compare/checkpoints.c))
