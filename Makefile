@@ -136,6 +136,7 @@ scaling: all ## time of a step against the number of spheres, 1e2 to 1e5 (expone
 VISCOSITIES := $(shell cd validation/cases/6-dense && echo viscosities-* | tr ' ' ',')
 golden: all ## sheared viscosities, code against code: hours of two cores, kept row by row in golden/viscosities; goes on where it stopped
 	$B/gate run --candidate "$B/shear --evaluate" --tier full --case $(VISCOSITIES) --jobs $(JOBS) --keep golden/viscosities --work $B/golden-cases --report $B/golden-report
+	@golden/viscosities/page.py golden/viscosities docs/viscosities.md
 	@cd golden/viscosities && gnuplot plot.gp
 	@echo "golden: $$(grep -c ',viscosity,' golden/viscosities/*-table.csv | awk -F: '{ n += $$2 } END { print n }') rows agree, see golden/viscosities and docs/viscosities.md"
 
