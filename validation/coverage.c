@@ -147,11 +147,19 @@ static void print_wrong(const struct coverage *c, const struct coverage_row *row
 static void print_not_judged(const struct coverage *c, const char *head, bool skipped)
 {
     bool first = true;
+    int column = 0;
     for (size_t k = 0; k < c->rows; k++) {
         const struct coverage_cell *all = &c->row[k].layer[0];
         if (strcmp(coverage_word(all), "not judged") != 0 || (all->skipped > 0) != skipped)
             continue;
-        printf("%s%s", first ? head : ", ", c->row[k].term);
+        const int n = (int)strlen(c->row[k].term) + 2;
+        if (first)
+            column = printf("%s", head);
+        else
+            column += printf(",%s", column + n > 116 ? "" : " ");
+        if (!first && column + n > 116)
+            column = printf("\n      ") - 1;
+        column += printf("%s", c->row[k].term);
         first = false;
     }
     if (!first)

@@ -9,7 +9,7 @@ static const double same = 1e-5;        /* ratios that differ less are one ratio
 
 void pattern_start(struct pattern *p, double tolerance)
 {
-    *p = (struct pattern){ .all = { .low = INFINITY, .high = -INFINITY }, .tolerance = tolerance };
+    *p = (struct pattern){ .all = { .low = INFINITY, .high = -INFINITY }, .tolerance = tolerance, .of_size = "a_2/a_1" };
 }
 
 static struct pattern_bin *bin_of(struct pattern_bin *bin, size_t *count, size_t room, double key)
@@ -117,7 +117,7 @@ static bool right_for_equal(const struct pattern *p)
     return equal && wrong_elsewhere;
 }
 
-/* " at gaps up to xi = 0.003 only" where a threshold divides wrong from right; else empty. */
+/* ", only at gaps up to xi = 0.003" where a threshold divides wrong from right, and what that means beyond touch; else empty. */
 static void gaps_wrong(const struct pattern *p, char text[TEXT])
 {
     double wrong_low = INFINITY, wrong_high = -INFINITY, right_low = INFINITY, right_high = -INFINITY;
@@ -133,11 +133,12 @@ static void gaps_wrong(const struct pattern *p, char text[TEXT])
     if (!isfinite(right_low) || !isfinite(wrong_low))
         return;
     if (wrong_high < right_low)
-        snprintf(text, TEXT, ", only at gaps up to xi = %g", wrong_high);
+        snprintf(text, TEXT, ", only at gaps up to xi = %g%s", wrong_high, wrong_high > 0 ? ": an inner cut-off" : "");
     else if (wrong_low > right_high)
-        snprintf(text, TEXT, ", only at gaps from xi = %g", wrong_low);
-    else if (p->gaps > 4)
-        snprintf(text, TEXT, ", at gaps from xi = %g to %g", wrong_low, wrong_high);
+        snprintf(text, TEXT, ", only at gaps from xi = %g%s", wrong_low,
+                 right_high > 0 ? ": an outer cut-off, or how the gap is scaled" : "");
+    else if (right_low < wrong_low && wrong_high < right_high && p->gaps > 4)
+        snprintf(text, TEXT, ", only at gaps from xi = %g to %g", wrong_low, wrong_high);
 }
 
 /* ", only in a sheared cell": a kind that has all of the wrong states, while others were seen. */
@@ -153,31 +154,36 @@ static void kinds_wrong(const struct pattern *p, char text[TEXT])
         snprintf(text, TEXT, ", only %s", p->kind_name[best]);
 }
 
-static void how_much(const struct pattern *p, char text[TEXT])
+/* The size of the mistake, and its likely kind unless `limited` to some gaps, which says more. */
+static void how_much(const struct pattern *p, bool limited, char text[TEXT])
 {
     const double low = p->all.low, high = p->all.high;
     const bool one = high - low <= same * (fabs(low) + fabs(high));
-    const bool everywhere = p->all.wrong == p->all.seen;
+    const bool everywhere = p->all.wrong == p->all.seen, by_size = fixed_within(p->size, p->sizes);
+    const double power = by_size ? power_of(p->size, p->sizes) : NAN;
+    char equal[64] = "";
+    for (size_t k = 0; k < p->sizes; k++)
+        if (fabs(p->size[k].key - 1) < 1e-9 && p->size[k].wrong)
+            snprintf(equal, sizeof equal, " (%.4g for equal radii)", p->size[k].low);
     if (p->nothing == p->all.wrong)
-        snprintf(text, TEXT, "nothing where it is wrong: the term is missing there");
+        snprintf(text, TEXT, "nothing%s", everywhere ? " at all: the term is missing" : " where it is wrong: the term is missing there");
     else if (p->unexpected == p->all.wrong)
         snprintf(text, TEXT, "something where nothing is expected");
     else if (p->scattered || !isfinite(low))
-        snprintf(text, TEXT, "in another direction than expected: a term is missing, added, or has the wrong vector");
+        snprintf(text, TEXT, "in another direction than expected: a term is missing or added, or a vector is wrong");
     else if (one && fabs(low + 1) < same)
         snprintf(text, TEXT, "the opposite sign%s", everywhere ? " everywhere" : "");
     else if (one)
-        snprintf(text, TEXT, "%.6g of expected%s", low, everywhere ? " at every gap and size ratio: a factor" : " where it is wrong: a factor");
-    else if (fixed_within(p->size, p->sizes)) {
-        const double power = power_of(p->size, p->sizes);
-        if (!isnan(power))
-            snprintf(text, TEXT, "%.4g to %.4g of expected, as the power %.3g of a_2/a_1: a radius or a power of one", low, high, power);
-        else
-            snprintf(text, TEXT, "%.4g to %.4g of expected, by size ratio alone", low, high);
-    } else if (p->gaps > 1 && fixed_within(p->gap, p->gaps))
-        snprintf(text, TEXT, "%.4g to %.4g of expected, by gap alone: the dependence on the gap, or a cut-off", low, high);
+        snprintf(text, TEXT, "%.6g of expected%s%s", low, everywhere ? " at every gap and size ratio" : " where it is wrong",
+                 limited ? "" : ": a factor");
+    else if (!isnan(power))
+        snprintf(text, TEXT, "%.4g to %.4g of expected, as the power %.3g of %s: a radius, or a power of one", low, high, power, p->of_size);
+    else if (by_size)
+        snprintf(text, TEXT, "%.4g to %.4g of expected, by size ratio alone%s", low, high, equal);
+    else if (p->gaps > 1 && fixed_within(p->gap, p->gaps))
+        snprintf(text, TEXT, "%.4g to %.4g of expected, by gap alone%s", low, high, limited ? "" : ": the dependence on the gap");
     else
-        snprintf(text, TEXT, "%.4g to %.4g of expected", low, high);
+        snprintf(text, TEXT, "%.4g to %.4g of expected%s", low, high, right_for_equal(p) ? ", by gap and size ratio" : "");
 }
 
 const char *pattern_words(const struct pattern *p)
@@ -186,10 +192,12 @@ const char *pattern_words(const struct pattern *p)
     char much[TEXT], gaps[TEXT], kinds[TEXT];
     if (p->all.wrong == 0)
         return "";
-    how_much(p, much);
     gaps_wrong(p, gaps);
+    how_much(p, gaps[0] != '\0', much);
     kinds_wrong(p, kinds);
     snprintf(text, sizeof text, "%s%s%s%s", much, gaps, kinds,
-             right_for_equal(p) ? ", right for equal radii: an index, or a size ratio" : "");
+             !right_for_equal(p)                 ? ""
+             : fixed_within(p->size, p->sizes)   ? "; right for equal radii, so an index, or a size ratio"
+                                                 : "; right for equal radii, so how the gap is scaled, or a size ratio");
     return text;
 }

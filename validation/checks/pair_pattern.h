@@ -17,6 +17,7 @@ struct pattern {
     size_t sizes, gaps, kinds;
     const char *kind_name[PATTERN_KINDS];       /* "with a history", "in a sheared cell"; borrowed */
     double tolerance;
+    const char *of_size;                        /* what the size ratio is called: "a_2/a_1" */
     bool scattered;                             /* some wrong vector is not along the expected one: no single ratio */
     size_t nothing, unexpected;                 /* wrong states where nothing is measured, or nothing expected */
 };
