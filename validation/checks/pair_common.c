@@ -322,7 +322,9 @@ const char *compare(const struct worst *w)
 {
     static char text[160];
     const double rounding = 1e-9;       /* of the other number: nothing, for the reader */
-    if (fabs(w->measured) <= rounding * fabs(w->expected))
+    if (isnan(w->measured))
+        snprintf(text, sizeof text, "no number where %.6g is expected", w->expected);
+    else if (fabs(w->measured) <= rounding * fabs(w->expected))
         snprintf(text, sizeof text, "nothing where %.6g is expected", w->expected);
     else if (fabs(w->expected) <= rounding * fabs(w->measured))
         snprintf(text, sizeof text, "%.6g where nothing is expected", w->measured);

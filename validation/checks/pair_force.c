@@ -215,31 +215,64 @@ static void judge(struct check_run *run, const struct pair_book *book, enum judg
                 sentence, compare(w), describe(&book->item[w->at], w->at));
 }
 
+/* To what kind of contact a state belongs; the friction law may be another than the plain one, so `slides` is a guess there. */
+static void kinds_of(const struct model *m, const struct pair_state *p, const char *kind[2])
+{
+    double n[3], r, across[3];
+    const double h = pair_geometry(p, n, &r), along = dot(p->history, n);
+    for (int k = 0; k < 3; k++)
+        across[k] = p->history[k] - along * n[k];
+    kind[0] = p->with_history ? "with a history" : "without a history";
+    kind[1] = !p->with_history ? NULL
+              : norm(across) * m->contact.tangential_stiffness > m->contact.friction * m->contact.normal_stiffness * fmax(-h, 0)
+                  ? "where the contact slides"
+              : p->listed_backwards ? "where the history is listed from 2 to 1" : "where the contact sticks";
+}
+
+/* The force along n less that of the spring: what a dashpot adds. */
+static void without_spring(const struct model *m, const struct pair_state *p, double force[3])
+{
+    double n[3], r;
+    const double h = pair_geometry(p, n, &r);
+    for (int k = 0; k < 3; k++)
+        force[k] += m->contact.normal_stiffness * fmax(-h, 0) * n[k];
+}
+
 /* A quantity of the model, with the pattern of its ratios: part 0, 1 of the force, or 2, 3: torque on 1, 2. */
 static void judge_pattern(struct check_run *run, const struct model *m, const struct pair_book *book, const struct pair_answer *a,
                           const char *force, bool contact, int part, const struct worst *w)
 {
     static const char *const what[] = { "force along n", "force across n", "torque on 1", "torque on 2" };
-    struct pattern pattern;
+    struct pattern pattern, damped;
+    char dashpot[512] = "";
     pattern_start(&pattern, run->gate_case->tolerance);
+    pattern_start(&damped, run->gate_case->tolerance);
     for (size_t k = 0; k < book->count && !(w->error <= run->gate_case->tolerance); k++) {
         const struct pair_state *p = &book->item[k];
+        const double ratio = p->s[1].radius / p->s[0].radius;
         struct expected e;
         double mine[2][3], expected[2][3];
+        const char *kind[2] = { NULL, NULL };
         (contact ? expect_contact : expect_lubrication)(m, p, &e);
         split_force(p, forces_at(&a->forces, k, force, 1), mine);
         split_force(p, e.pair.force[0], expected);
-        const char *kind = !contact ? NULL : !p->with_history ? "without a history" : "with a history";
-        const char *kind_too = p->with_history ? (p->listed_backwards ? "where the history is listed from 2 to 1" : "where it is listed from 1 to 2")
-                                               : NULL;
+        if (contact)
+            kinds_of(m, p, kind);
         if (part < 2)
-            pattern_see(&pattern, mine[part], expected[part], 3, e.force_scale, p->s[1].radius / p->s[0].radius, p->xi, kind, kind_too);
+            pattern_see(&pattern, mine[part], expected[part], 3, e.force_scale, ratio, p->xi, kind[0], kind[1]);
         else
-            pattern_see(&pattern, forces_at(&a->forces, k, force, part - 1) + 3, e.pair.torque[part - 2], 3, e.torque_scale,
-                        p->s[1].radius / p->s[0].radius, p->xi, kind, kind_too);
+            pattern_see(&pattern, forces_at(&a->forces, k, force, part - 1) + 3, e.pair.torque[part - 2], 3, e.torque_scale, ratio,
+                        p->xi, kind[0], kind[1]);
+        if (part == 0 && contact && m->has_laws) {
+            without_spring(m, p, mine[0]);
+            without_spring(m, p, expected[0]);
+            pattern_see(&damped, mine[0], expected[0], 3, e.force_scale, ratio, p->xi, kind[0], kind[1]);
+        }
     }
+    if (pattern_simple(&damped))
+        snprintf(dashpot, sizeof dashpot, "; less the spring it is %s", pattern_words(&damped));
     check_error(run, MODEL, what[part], w->measured, w->expected, w->error, run->gate_case->tolerance,
-                "%s of %s: %s; worst is %s at %s", what[part], force, pattern_words(&pattern), compare(w),
+                "%s of %s: %s%s; worst is %s at %s", what[part], force, pattern_words(&pattern), dashpot, compare(w),
                 describe(&book->item[w->at], w->at));
 }
 

@@ -187,15 +187,19 @@ static const char *image_words(const struct images *i)
                           : "; images are misplaced, or not found";
 }
 
+/* `right_still`: whether this motion was right in every cell without shear so far; those come first in a case. */
 static void judge(struct check_run *run, const char *variant, const struct views *v, const struct worst worst[MOTIONS],
-                  const struct images *images)
+                  const struct images *images, bool still, bool right_still[MOTIONS])
 {
     for (int motion = IMAGE; motion < MOTIONS; motion++) {
         const struct worst *w = &worst[motion];
         if (w->error == -1)
             continue;
         char what[128], where[64] = "";
-        const char *which = motion == IMAGE ? image_words(images) : "";
+        const char *which = motion == IMAGE ? image_words(images)
+                            : !still && right_still[motion] ? "; right without shear, so the velocity of an image or of a wrapped sphere" : "";
+        if (still)
+            right_still[motion] = w->error <= run->gate_case->tolerance;
         const struct view *how = &v->view[w->at];
         snprintf(what, sizeof what, "%s: %s", variant, motion_name[motion]);
         if (motion == IMAGE)
@@ -211,6 +215,7 @@ void pair_frames(struct check_run *run)
     const char *force = json_string_value(json_object_get(run->gate_case->parameters, "force"));
     size_t k;
     json_t *variant;
+    bool right_still[MOTIONS] = { false };
     json_array_foreach(json_object_get(run->gate_case->parameters, "variants"), k, variant)
     {
         const char *name = json_string_value(json_object_get(variant, "name"));
@@ -227,7 +232,7 @@ void pair_frames(struct check_run *run)
         if (answered) {
             struct images images = { { 0 }, { 0 } };
             see(&m, force, &v, &answer, run->gate_case->tolerance, worst, &images);
-            judge(run, name, &v, worst, &images);
+            judge(run, name, &v, worst, &images, norm(m.gradient[0]) + norm(m.gradient[1]) + norm(m.gradient[2]) == 0, right_still);
         }
         forces_free(&answer.forces);
         book_free(&v.book);

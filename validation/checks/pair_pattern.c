@@ -201,3 +201,8 @@ const char *pattern_words(const struct pattern *p)
                                                  : "; right for equal radii, so how the gap is scaled, or a size ratio");
     return text;
 }
+
+bool pattern_simple(const struct pattern *p)
+{
+    return p->all.wrong > 0 && !p->scattered && p->unexpected == 0 && isfinite(p->all.low) && fixed_within(p->size, p->sizes);
+}

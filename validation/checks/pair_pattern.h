@@ -31,5 +31,7 @@ void pattern_see(struct pattern *p, const double *measured, const double *expect
                  double xi, const char *kind, const char *kind_too);
 /* "1.02 of expected at every gap and size ratio: a factor" in a buffer of its own until the next call; empty if nothing is wrong. */
 const char *pattern_words(const struct pattern *p);
+/* Whether one number, or one for each size ratio, tells all of it. */
+bool pattern_simple(const struct pattern *p);
 
 #endif
