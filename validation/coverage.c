@@ -143,26 +143,40 @@ static void print_wrong(const struct coverage *c, const struct coverage_row *row
     printf(told > 4 ? " and %d more\n" : "\n", told - 4);
 }
 
-/* Terms that nothing judged: `skipped`, the candidate does not have them; else no case of theirs was asked. */
+/* Whether nothing judged the term: because it was skipped, or because no case of its was asked. */
+static bool not_judged(const struct coverage_row *row, bool skipped)
+{
+    return strcmp(coverage_word(&row->layer[0]), "not judged") == 0 && (row->layer[0].skipped > 0) == skipped;
+}
+
+/* A word of a list that is wrapped at 116 columns. */
+static void print_word(const char *head, const char *before, const char *word, int *column)
+{
+    const int n = (int)(strlen(before) + strlen(word)) + 2;
+    if (*column == 0)
+        *column = printf("%s", head);
+    else if (*column + n > 116)
+        *column = printf(",\n      ") - 2;
+    else
+        *column += printf(", ");
+    *column += printf("%s%s", before, word);
+}
+
+/* Terms that nothing judged; where it is all of a group (they stand together in terms.json), the group. */
 static void print_not_judged(const struct coverage *c, const char *head, bool skipped)
 {
-    bool first = true;
     int column = 0;
-    for (size_t k = 0; k < c->rows; k++) {
-        const struct coverage_cell *all = &c->row[k].layer[0];
-        if (strcmp(coverage_word(all), "not judged") != 0 || (all->skipped > 0) != skipped)
-            continue;
-        const int n = (int)strlen(c->row[k].term) + 2;
-        if (first)
-            column = printf("%s", head);
-        else
-            column += printf(",%s", column + n > 116 ? "" : " ");
-        if (!first && column + n > 116)
-            column = printf("\n      ") - 1;
-        column += printf("%s", c->row[k].term);
-        first = false;
+    for (size_t first = 0, next; first < c->rows; first = next) {
+        size_t n = 0;
+        for (next = first; next < c->rows && strcmp(c->row[next].group, c->row[first].group) == 0; next++)
+            n += not_judged(&c->row[next], skipped);
+        if (n == next - first)
+            print_word(head, "all of ", c->row[first].group, &column);
+        for (size_t k = first; k < next && n < next - first; k++)
+            if (not_judged(&c->row[k], skipped))
+                print_word(head, "", c->row[k].term, &column);
     }
-    if (!first)
+    if (column)
         putchar('\n');
 }
 
