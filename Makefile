@@ -34,9 +34,10 @@ endif
 validate: all ## the fast tier against our own solver, and its report
 	$B/gate run --candidate "$B/shear --evaluate" --jobs $(JOBS) --work $B/cases --report $B/report
 
-test: ## build and run the unit tests
+test: ## build and run the unit tests, and run the CI files of tools/ci
 	@$(MAKE) $(PARALLEL) $(PROGRAMS) $B/unit-tests
 	$B/unit-tests
+	@tools/ci/check.sh $B
 
 # ---- programs ----
 
@@ -149,6 +150,12 @@ engine-cost: all ## a step of shear-lammps against one of shear, and on 2 ranks 
 second-opinion: ## LAMMPS's lubrication and noise styles, coefficient by coefficient (docs/lammps.md)
 	@python3 tools/lammps/coefficients.py
 
+ci-files: $B/shear ## run tools/ci/*.yml as GitHub and GitLab would, with a right and a wrong candidate
+	@tools/ci/check.sh $B
+
+suite-manifest: $B/gate ## freeze what the suite asks and how strictly (validation/suite-1.0.json); once, when it is released
+	$B/gate freeze
+
 work-precision: all ## seconds for 1 % of the pairs near contact, by integrator and step (about 5 minutes; keeps finished rows)
 	@tools/work-precision.sh $B
 
@@ -158,5 +165,5 @@ help: ## this list
 clean: ## remove build/
 	rm -rf $B
 
-.PHONY: all setup validate test lines coverage sanitize memcheck scenes faults calibrate bench scaling golden engine engine-cost second-opinion work-precision help clean FORCE
+.PHONY: all setup validate test lines coverage sanitize memcheck scenes faults calibrate bench scaling golden engine engine-cost second-opinion work-precision help clean ci-files suite-manifest FORCE
 -include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS) $(ENGINE) tools/compare/checkpoints.c))

@@ -133,6 +133,7 @@ void run_all(const struct run_plan *plan, struct finished_case *done, void (*com
                 struct finished_case *d = &done[workers[w].at];
                 workers[w].pid = 0;
                 collect(d, status);
+                known_settle(plan->known, d);
                 d->seconds = now() - workers[w].start;
                 if (terminal)
                     printf("\r\033[K");
