@@ -25,7 +25,6 @@ build/vectors golden/vectors
 #                   make vectors: the solver, which shares no source with validation/theory, through files
 #                   per term, published or exact: docs/verdicts.md and the heads of validation/theory/*.c
 MANIFEST
-    cd golden
-    sha256sum vectors/*.json
+    (cd golden && sha256sum vectors/*.json)
 } >build/MANIFEST
 mv build/MANIFEST golden/MANIFEST
