@@ -90,6 +90,15 @@ $B/obj/tools/golden/%.o: tools/golden/%.c
 $B/vectors: $(call objects,$(GOLDEN) $(addprefix validation/theory/,contact.c contact_laws.c drag.c repulsion.c resistance.c))
 	$(CC) $(CFLAGS) $^ -o $@ -lm
 
+# The audit: everything of validation/theory again, in quadruple precision.
+AUDIT   := $(wildcard tools/audit/*.c)
+$B/obj/tools/audit/%.o: tools/audit/%.c
+	@mkdir -p $(@D)
+	$(CC) $(BASE) $(CFLAGS) -Ivalidation/theory -c $< -o $@
+
+$B/audit: $(call objects,$(AUDIT) $(wildcard validation/theory/*.c))
+	$(CC) $(CFLAGS) $^ -o $@ -ljansson -lgsl -lgslcblas -lquadmath -lm
+
 $B/lammps-candidate: tools/lammps/candidate.py
 	@mkdir -p $(@D)
 	install -m 755 $< $@
@@ -155,6 +164,10 @@ vectors: all ## golden/vectors against what makes them (same bytes) and against 
 	@$(MAKE) $(PARALLEL) $B/vectors
 	@python3 tools/golden/check.py $B
 
+audit: ## golden vectors and closed forms of the gate, recomputed in quadruple precision by other derivations
+	@$(MAKE) $(PARALLEL) $B/audit
+	@$B/audit
+
 work-precision: all ## seconds for 1 % of the pairs near contact, by integrator and step (about 5 minutes; keeps finished rows)
 	@tools/work-precision.sh $B
 
@@ -164,5 +177,5 @@ help: ## this list
 clean: ## remove build/
 	rm -rf $B
 
-.PHONY: all setup validate test lines coverage sanitize memcheck scenes faults calibrate bench scaling engine engine-cost second-opinion vectors work-precision help clean FORCE
--include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS) $(ENGINE) $(GOLDEN) tools/compare/checkpoints.c))
+.PHONY: all setup validate test lines coverage sanitize memcheck scenes faults calibrate bench scaling engine engine-cost second-opinion vectors audit work-precision help clean FORCE
+-include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS) $(ENGINE) $(GOLDEN) $(AUDIT) tools/compare/checkpoints.c))
