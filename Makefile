@@ -58,7 +58,7 @@ $B/obj/validation/%.o: validation/%.c
 
 $B/obj/tests/%.o: tests/%.c
 	@mkdir -p $(@D)
-	$(CC) $(BASE) $(CFLAGS) -Isolver -Ivalidation -Itests -Itools/engine -c $< -o $@
+	$(CC) $(BASE) $(CFLAGS) -Isolver -Ivalidation -Ivalidation/theory -Itests -Itools/engine -Itools/golden -c $< -o $@
 
 # LAMMPS as a library, and MPI; as system headers, for their warnings are not ours to mend.
 HOST_CFLAGS = $(patsubst -I%,-isystem %,$(shell pkg-config --cflags liblammps ompi-c))
@@ -82,6 +82,24 @@ $B/obj/tools/lammps/%.o: tools/lammps/%.c
 	@mkdir -p $(@D)
 	$(CC) $(BASE) $(CFLAGS) -DLAMMPS_SMALLBIG -Ivalidation/theory -c $< -o $@
 
+# Golden vectors: the gate's closed forms, written down.
+GOLDEN  := $(wildcard tools/golden/*.c)
+$B/obj/tools/golden/%.o: tools/golden/%.c
+	@mkdir -p $(@D)
+	$(CC) $(BASE) $(CFLAGS) -Ivalidation/theory -c $< -o $@
+
+$B/vectors: $(call objects,$(GOLDEN) $(addprefix validation/theory/,contact.c contact_laws.c drag.c repulsion.c resistance.c))
+	$(CC) $(CFLAGS) $^ -o $@ -lm
+
+# The audit: everything of validation/theory again, in quadruple precision.
+AUDIT   := $(wildcard tools/audit/*.c)
+$B/obj/tools/audit/%.o: tools/audit/%.c
+	@mkdir -p $(@D)
+	$(CC) $(BASE) $(CFLAGS) -Ivalidation/theory -c $< -o $@
+
+$B/audit: $(call objects,$(AUDIT) $(wildcard validation/theory/*.c))
+	$(CC) $(CFLAGS) $^ -o $@ -ljansson -lgsl -lgslcblas -lquadmath -lm
+
 $B/lammps-candidate: tools/lammps/candidate.py
 	@mkdir -p $(@D)
 	install -m 755 $< $@
@@ -96,7 +114,7 @@ $B/shear-lammps: $(call objects,$(ENGINE) $(filter-out solver/shear.c,$(SOLVER))
 $B/compare-checkpoints: $B/obj/tools/compare/checkpoints.o
 	$(CC) $(CFLAGS) $^ -o $@ -lm
 
-$B/unit-tests: $(call objects,$(TESTS) tools/engine/refuse.c $(filter-out solver/shear.c,$(SOLVER)) $(filter-out validation/gate.c,$(GATE)))
+$B/unit-tests: $(call objects,$(TESTS) tools/engine/refuse.c $(filter-out tools/golden/main.c,$(GOLDEN)) $(filter-out solver/shear.c,$(SOLVER)) $(filter-out validation/gate.c,$(GATE)))
 	$(CC) $(CFLAGS) $^ -o $@ -lcunit -ljansson -lgsl -lgslcblas -lm
 
 # ---- measuring: each prints its figure on its last line and fails when its bar is not met ----
@@ -156,6 +174,13 @@ ci-files: $B/shear ## run tools/ci/*.yml as GitHub and GitLab would, with a righ
 suite-manifest: $B/gate ## freeze what the suite asks and how strictly (validation/suite-1.0.json); once, when it is released
 	$B/gate freeze
 
+vectors: all ## golden/vectors against what makes them (same bytes) and against our solver
+	@$(MAKE) $(PARALLEL) $B/vectors
+	@python3 tools/golden/check.py $B
+audit: ## golden vectors and closed forms of the gate, recomputed in quadruple precision by other derivations
+	@$(MAKE) $(PARALLEL) $B/audit
+	@$B/audit
+
 work-precision: all ## seconds for 1 % of the pairs near contact, by integrator and step (about 5 minutes; keeps finished rows)
 	@tools/work-precision.sh $B
 
@@ -165,5 +190,6 @@ help: ## this list
 clean: ## remove build/
 	rm -rf $B
 
-.PHONY: all setup validate test lines coverage sanitize memcheck scenes faults calibrate bench scaling golden engine engine-cost second-opinion work-precision help clean ci-files suite-manifest FORCE
--include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS) $(ENGINE) tools/compare/checkpoints.c))
+.PHONY: all setup validate test lines coverage sanitize memcheck scenes faults calibrate bench scaling golden engine engine-cost second-opinion ci-files \
+	suite-manifest vectors audit work-precision help clean FORCE
+-include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS) $(ENGINE) $(GOLDEN) $(AUDIT) tools/compare/checkpoints.c))
