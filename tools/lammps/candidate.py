@@ -354,6 +354,15 @@ def contact_by_pairs(t, rows):
     return parts
 
 
+def write_slipping(t, out, pairs):
+    """For the gate's check of paths: how many contacts there are, and how many at the cap."""
+    with open(os.path.join(out, "slipping.csv"), "w") as f:
+        f.write("step,contacts,slipping\n")
+        for step, rows in pairs.items():
+            touching = [(abs(row[1]), math.hypot(*row[5:8])) for row in rows if row[1]]
+            f.write(f"{step - t.first},{len(touching)},{sum(s >= t.friction * n * (1 - 1e-9) for n, s in touching)}\n")
+
+
 def stress_cells(t, state, part, kinetic):
     part = {**part, "kinetic": kinetic}
     if "drag" in t.forces:
@@ -370,6 +379,8 @@ def answer_run(t, out):
                 hosted[int(step)] = [[float(v[3 * a + b]) / t.volume for b in range(3)] for a in range(3)]
         need(sum(o in origins(t) for o in ("contact_normal", "repulsion", *(() if hosted else ("lubrication",)))) < 2, "LAMMPS does not tell the pressures of several pair styles apart")
         pairs = {step: rows for step, _, rows in frames(os.path.join(out, "lammps.pairs"))} if t.friction else {}
+        if t.friction:
+            write_slipping(t, out, pairs)
         with open(os.path.join(out, "stress.csv"), "w") as f:
             f.write("step,time,strain" + header(t))
             last = -1

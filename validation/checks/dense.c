@@ -213,6 +213,7 @@ void dense_equivalence(struct check_run *run)
 const struct check dense_checks[] = {
     { "dense-equivalence", dense_equivalence },
     { "dense-path", dense_path },
+    { "contact-path", contact_path },
     { "dense-memory", dense_memory },
     { "equation-of-state", check_equation_of_state },
     { NULL, NULL },

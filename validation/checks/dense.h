@@ -24,8 +24,13 @@ void dense_start_free(struct dense_start *s);
  */
 bool dense_ask_both(struct check_run *run, const char *name, const struct dense_start *s, char out[2][PATH_LENGTH]);
 
+/* What happened on a path of spheres in shear along x, gradient y, and how often: summed over the frames of trajectory.csv and slipping.csv. */
+struct dense_events { size_t made, lost, slipping, sticking, contacts /* in the last frame */, remaps /* cell tilted past half its edge */; };
+bool dense_events_count(const struct dense_start *s, const char *out, double dt, struct dense_events *e, char why[WHY_LENGTH]);
+
 void dense_equivalence(struct check_run *run);
 void dense_path(struct check_run *run);
+void contact_path(struct check_run *run);
 void dense_memory(struct check_run *run);
 void check_equation_of_state(struct check_run *run);
 
