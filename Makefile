@@ -74,7 +74,7 @@ $B/gate: $(call objects,$(GATE))
 	$(CC) $(CFLAGS) $^ -o $@ -ljansson -lgsl -lgslcblas -lm
 
 # The gate's own resistances inside LAMMPS's library: a second code where stock styles are wrong.
-$B/lammps-host: $B/obj/tools/lammps/host.o $B/obj/validation/theory/resistance.o
+$B/lammps-host: $B/obj/tools/lammps/host.o $B/obj/validation/theory/resistance.o $B/obj/validation/theory/repulsion.o
 	$(CC) $(CFLAGS) $^ -o $@ -llammps -lm
 
 $B/obj/tools/lammps/%.o: tools/lammps/%.c

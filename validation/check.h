@@ -54,6 +54,7 @@ struct check_run {
     int samples;                        /* multiply sample counts by this: 1 or 4 */
     struct results results;
     double candidate_seconds;           /* wall time spent in the candidate so far */
+    const char *keep;                   /* folder for what took long to compute, or null: checks that run for hours go on where they stopped */
 };
 
 struct check { const char *name; void (*run)(struct check_run *run); };

@@ -36,6 +36,7 @@ static const char help[] =
     "  --seed-offset K       other seeds for everything random (default 0: those written in the cases)\n"
     "  --seeds N             calibrate: seed offsets 1 to N\n"
     "  --table FILE          calibrate: CSV with a row per seed\n"
+    "  --keep DIR            finished realisations of long tables are kept there as CSV and not computed again (make golden)\n"
     "  --report DIR          index.html and junit.xml (default build/report)\n"
     "  --work DIR            what candidates are given and answer (default build/cases)\n"
     "  --suite-dir DIR       the folder that holds cases/ and flags.json (default: validation/, found from the program)\n"
@@ -43,7 +44,7 @@ static const char help[] =
     "Exit codes: 0 pass, 1 fail, 2 wrong usage, 3 only inconclusive, 77 nothing supported.\n";
 
 struct options {
-    const char *candidate, *layers, *cases, *needs, *report, *work, *table;
+    const char *candidate, *layers, *cases, *needs, *report, *work, *table, *keep;
     char suite_dir[PATH_LENGTH];
     enum tier tier;
     int jobs;
@@ -105,6 +106,8 @@ static int parse_option(struct options *o, const char *name, const char *value)
         o->needs = value;
     else if (strcmp(name, "--report") == 0)
         o->report = value;
+    else if (strcmp(name, "--keep") == 0)
+        o->keep = value;
     else if (strcmp(name, "--table") == 0)
         o->table = value;
     else if (strcmp(name, "--work") == 0)
@@ -216,7 +219,7 @@ static int run_cases(const struct options *o, const struct suite_of_cases *suite
         return usage("%s", why);
     work = realpath(o->work, NULL); /* absolute: a candidate may change its folder */
     struct run_plan plan = { .gate_case = chosen, .count = count, .work = work, .jobs = o->jobs, .p_values = suite->p_values,
-                             .seed_offset = o->seed_offset };
+                             .seed_offset = o->seed_offset, .keep = o->keep };
     plan.candidate = (struct candidate){ .command = o->candidate, .bytes = (size_t)1 << 30 };
 
     struct provenance p = { .suite_version = GATE_VERSION, .candidate = o->candidate, .level = "A", .precision = "double",

@@ -35,7 +35,7 @@ static int work_on(const struct run_plan *plan, const struct gate_case *c, const
     candidate_stop_with_us();
     struct candidate candidate = plan->candidate;
     candidate.seconds = c->seconds;
-    struct check_run run = { .gate_case = c, .candidate = &candidate };
+    struct check_run run = { .gate_case = c, .candidate = &candidate, .keep = plan->keep };
     snprintf(run.work, sizeof run.work, "%s", work);
     check_judge(&run, check_find(c->check), plan->p_values, plan->seed_offset);
     char path[PATH_LENGTH];

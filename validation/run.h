@@ -12,6 +12,7 @@ struct run_plan {
     int jobs;
     int p_values;                       /* of the whole suite */
     unsigned seed_offset;
+    const char *keep;                   /* check.h */
 };
 
 /* Fills done[k] for plan->gate_case[k]; calls `completed` as each ends. */

@@ -68,7 +68,7 @@ class Task:
         self.mass = [4 / 3 * PI * s["density"] * s["radius"] ** 3 for s in scene["species"]]
         if own == "reference":
             turning = scene.get("shear") and self.forces.get("drag", {}).get("torque")
-            self.own = own = "theory" if turning or "lubrication" in self.forces or "drag_noise" in self.forces else None
+            self.own = own = "theory" if turning or "lubrication" in self.forces or "drag_noise" in self.forces or "contact" in self.forces and "repulsion" in self.forces else None
         self.eta, self.kT = scene.get("fluid", {}).get("viscosity"), scene.get("fluid", {}).get("kT", 0)
         self.read_box()
         self.check_forces()
@@ -177,7 +177,7 @@ def pair_styles(t, forces):
         style = f"gran/hooke/history {c['normal_stiffness']!r} {c['tangential_stiffness']!r} {gn!r} {gt!r} {t.friction!r} {int(gt > 0)}" if t.friction \
             else f"gran/hooke {c['normal_stiffness']!r} 0 {gn!r} 0 0 0"
         found.append((style, ["* *"], "forces.contact: k_n delta, m_eff gamma_n dashpot; tangential spring k_t with Coulomb's cap, full radii as lever arms"))
-    if "repulsion" in forces:
+    if "repulsion" in forces and t.own != "theory":
         r, coefficients = t.forces["repulsion"], []
         for i, j in pairs:
             kappa, touch = r["kappa_factor"] * (a[i] + a[j]), a[i] + a[j]
@@ -215,9 +215,11 @@ def physics(t, state, forces):
             i, j, *rest = c.split()
             put(" ".join(["pair_coeff", i, j, *([style.split()[0]] if hybrid else []), *rest]))
     # The skin costs neighbours, but LAMMPS also rebuilds its lists when a corner of the sheared cell has moved half of it.
-    if t.own == "theory":   # reads the same list up to the outer cut-off: half the skin covers it, and ten steps move a sphere far less than the rest
-        skin = 2 * max(a) * t.forces.get("lubrication", {}).get("outer_gap", 0)
-        put(f"neighbor {skin + 0.2 * min(a)!r} bin\nneigh_modify every 10 delay 0 check no\nfix host all external pf/callback 1 1")
+    if t.own == "theory":   # reads the same list up to the outer cut-off; the rest of the skin lasts while no sphere moves by half of it
+        r = t.forces.get("repulsion", {"cutoff": 0, "kappa_factor": 0})
+        reach, rest = 2 * max(a) * max(t.forces.get("lubrication", {}).get("outer_gap", 0), r["cutoff"] * r["kappa_factor"]), 0.2 * min(a)
+        fast = 8 * math.sqrt(t.kT / min(t.mass)) + 20 * abs(t.rate) * max(a)
+        put(f"neighbor {reach + rest!r} bin\nneigh_modify every {min(200, max(10, int(0.4 * rest / (fast * t.dt))))} delay 0 check no\nfix host all external pf/callback 1 1")
     else:
         put(f"neighbor {max(0.3 * min(a), min(1.2 * min(a), 0.08 * t.edge[1]))!r} bin\nneigh_modify every 1 delay 0 check yes")
     put(f"# shear: dU_x/dy; `remap v` changes the velocity of what crosses a face\nfix flow all deform 1 xy erate {t.rate!r} remap v flip no")
@@ -259,7 +261,7 @@ def write_deck(t, f):
         if t.states_every:
             f.write(f"dump s all custom {t.states_every} lammps.dump id ix iy iz x y z vx vy vz omegax omegay omegaz\ndump_modify s sort id format float %.17g\n")
         if t.stress_every and t.friction:
-            f.write("compute pairs all pair/local dist force fx fy fz p1 p2 p3\n"
+            f.write("compute pairs all pair/local dist force fx fy fz p1 p2 p3 cutoff radius\n"
                     f"dump p all local {t.stress_every} lammps.pairs c_pairs[*]\ndump_modify p format float %.17g\n")
         span = f"start {t.first - 1} stop {t.first + t.steps}"
         f.write(f"# one step in which only the cell moves, then all steps of the run; `pre no` keeps forces and lists\n"
@@ -272,7 +274,11 @@ def write_parameters(t, out):
     style = pair_styles(t, t.forces)[0][0].split()[0] if "contact" in t.forces else "zero"
     flags = [int(n in t.forces) for n in ("drag", "lubrication", "drag_noise", "lubrication_noise")]
     flags.insert(1, int(t.forces.get("drag", {}).get("torque", False)))
-    values = [t.eta, t.rate, t.dt, t.kT, t.scene.get("seed", 1), *flags, l.get("inner_gap", 1), l.get("outer_gap", 0), t.stress_every, t.first, style]
+    need(len({t.forces[n]["distribution"] for n in NOISES if n in t.forces}) < 2, "the host draws all its numbers from one distribution")
+    uniform = int(any(t.forces[n]["distribution"] == "uniform" for n in NOISES if n in t.forces))
+    r = t.forces.get("repulsion", {"form": "energy", "energy": 0, "kappa_factor": 1, "cutoff": 0})
+    repulsion = [int(r["form"] == "energy"), r[r["form"]], r["kappa_factor"], r["cutoff"]]
+    values = [t.eta, t.rate, t.dt, t.kT, t.scene.get("seed", 1), t.scene.get("realisation", 0), uniform, *flags, l.get("inner_gap", 1), l.get("outer_gap", 0), *repulsion, t.stress_every, t.first, style]
     with open(os.path.join(out, "host.parameters"), "w") as f:
         f.write("\n".join(str(v) for v in values) + "\n")
 
@@ -354,13 +360,16 @@ def contact_by_pairs(t, rows):
     return parts
 
 
-def write_slipping(t, out, pairs):
-    """For the gate's check of paths: how many contacts there are, and how many at the cap."""
+def read_pairs(t, out):
+    """Contact stress of each frame of pairs; and slipping.csv for the gate's check of paths: contacts, and those at the cap."""
+    found = {}
     with open(os.path.join(out, "slipping.csv"), "w") as f:
         f.write("step,contacts,slipping\n")
-        for step, rows in pairs.items():
+        for step, _, rows in frames(os.path.join(out, "lammps.pairs")):
             touching = [(abs(row[1]), math.hypot(*row[5:8])) for row in rows if row[1]]
             f.write(f"{step - t.first},{len(touching)},{sum(s >= t.friction * n * (1 - 1e-9) for n, s in touching)}\n")
+            found[step] = contact_by_pairs(t, rows)
+    return found
 
 
 def stress_cells(t, state, part, kinetic):
@@ -376,11 +385,9 @@ def answer_run(t, out):
         if t.own == "theory":
             for line in open(os.path.join(out, "host.stress")):
                 step, *v = line.split()
-                hosted[int(step)] = [[float(v[3 * a + b]) / t.volume for b in range(3)] for a in range(3)]
-        need(sum(o in origins(t) for o in ("contact_normal", "repulsion", *(() if hosted else ("lubrication",)))) < 2, "LAMMPS does not tell the pressures of several pair styles apart")
-        pairs = {step: rows for step, _, rows in frames(os.path.join(out, "lammps.pairs"))} if t.friction else {}
-        if t.friction:
-            write_slipping(t, out, pairs)
+                hosted[int(step)] = [[[float(v[9 * part + 3 * a + b]) / t.volume for b in range(3)] for a in range(3)] for part in range(2)]
+        need(hosted or sum(o in origins(t) for o in ("contact_normal", "repulsion", "lubrication")) < 2, "LAMMPS does not tell the pressures of several pair styles apart")
+        pairs = read_pairs(t, out) if t.friction else {}
         with open(os.path.join(out, "stress.csv"), "w") as f:
             f.write("step,time,strain" + header(t))
             last = -1
@@ -388,9 +395,9 @@ def answer_run(t, out):
                 if step % t.stress_every or step < t.first or step == last:
                     continue        # printed anyway: first and last step of each of the two runs, and so step 0 twice
                 last, passed = step, (step - t.first) * t.dt
-                part = dict(zip(("contact_normal", "contact_tangential"), contact_by_pairs(t, pairs[step]))) if t.friction else {o: pair for o in origins(t)}
+                part = dict(zip(("contact_normal", "contact_tangential"), pairs[step])) if t.friction else {o: pair for o in origins(t)}
                 if hosted:
-                    part["lubrication"] = hosted[step]
+                    part["lubrication"], part["repulsion"] = hosted[step]
                 f.write(f"{step - t.first},{t.time + passed:.17g},{abs(t.rate) * passed:.17g}" + stress_cells(t, 0, part, kinetic))
     if t.states_every:
         with open(os.path.join(out, "trajectory.csv"), "w") as f:

@@ -176,7 +176,7 @@ static bool run_variant(struct check_run *run, const json_t *variant, struct tri
     bool good = s.start.row && s.mass && model_read(run, s.start.scene, &model);
     if (good) {
         place_pairs(par, &model, &s);
-        good = dense_ask_both(run, name, &s.start, out) && read_motion(run, out[0], &m[0]) && read_motion(run, out[1], &m[1]);
+        good = dense_ask_both(run, name, &s.start, out, NULL) && read_motion(run, out[0], &m[0]) && read_motion(run, out[1], &m[1]);
     }
     if (good) {
         double stiffness[64] = { 0 };

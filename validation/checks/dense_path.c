@@ -122,11 +122,8 @@ static void judge_states(struct check_run *run, const struct dense_start *s, cha
 static void judge_events(struct check_run *run, const struct dense_start *s, const char *reference)
 {
     struct dense_events e;
-    char why[WHY_LENGTH];
-    if (!dense_events_count(s, reference, scene_number(s->scene, "dynamics.verlet.dt", 0), &e, why)) {
-        check_garbage(run, why);
+    if (!dense_events_count(run, s, reference, &e))
         return;
-    }
     const bool all = e.made && e.lost && e.slipping && e.sticking && e.remaps;
     struct result *r = check_error(run, INVARIANT, "what the path tries", all, 1, all ? 0 : 1, 0.5,
                                    "on the path %zu contacts are made, %zu lost, %zu slip and %zu stick in the frames looked at, and the cell is "
@@ -146,7 +143,7 @@ void dense_path(struct check_run *run)
     scene_set(s.scene, "run", json_pack("{sI}", "steps", (json_int_t)steps));
     scene_set(s.scene, "output.states.every", json_integer((json_int_t)(watch > 0 ? watch : every)));
     scene_set(s.scene, "output.stress.every", json_integer((json_int_t)every / 10));
-    if (dense_ask_both(run, "path", &s, out)) {
+    if (dense_ask_both(run, "path", &s, out, NULL)) {
         const bool friction = scene_number(s.scene, "forces.contact.friction", 0) > 0;
         const char *const origin[4] = { "contact_normal", "kinetic", friction ? "contact_tangential" : NULL,
                                         scene_get(s.scene, "forces.lubrication") ? "lubrication" : NULL };
