@@ -81,9 +81,13 @@ $B/obj/tools/lammps/%.o: tools/lammps/%.c
 	@mkdir -p $(@D)
 	$(CC) $(BASE) $(CFLAGS) -DLAMMPS_SMALLBIG -Ivalidation/theory -c $< -o $@
 
-$B/lammps-candidate: tools/lammps/candidate.py
+$B/lammps-candidate: tools/lammps/candidate.py $B/lammps_stock.py $B/lammps_reference.py
 	@mkdir -p $(@D)
 	install -m 755 $< $@
+
+$B/lammps_%.py: tools/lammps/lammps_%.py
+	@mkdir -p $(@D)
+	install -m 644 $< $@
 
 $B/obj/tools/compare/%.o: tools/compare/%.c
 	@mkdir -p $(@D)
