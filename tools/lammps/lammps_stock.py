@@ -46,6 +46,7 @@ class Stock:
             only(species, "the species' key", "name radius density")
         self.radius = [s["radius"] for s in scene["species"]]
         self.mass = [4 / 3 * PI * s["density"] * s["radius"] ** 3 for s in scene["species"]]
+        self.seed = (scene.get("seed", 1) + 104729 * scene.get("realisation", 0)) % 900000000 + 1
         self.eta, self.kT = scene.get("fluid", {}).get("viscosity"), scene.get("fluid", {}).get("kT", 0)
         self.read_box()
         self.check_contact()
@@ -85,6 +86,7 @@ class Stock:
              "fix langevin damps spins towards zero, not towards half the vorticity: in shear \"torque\" must be false")
         need(self.own or "lubrication" not in self.forces,
              "lubricate has other spin terms and wrong spins in shear, lubricate/poly breaks the third law at unequal radii: no equivalent of \"lubrication\"")
+        need(self.own != "equal" or "lubrication" not in self.forces or len(set(self.radius)) == 1, "lubricate takes spheres of one radius only")
         for noise in NOISES:
             need(self.own or noise not in self.forces or self.forces[noise]["distribution"] == "uniform",
                  f"LAMMPS draws uniform numbers: {noise} must have \"distribution\": \"uniform\"")
@@ -161,7 +163,7 @@ class Stock:
             if name in forces:
                 l = self.forces["lubrication"]
                 inner, outer = (lambda i, j, g=g: (a[i] + a[j]) * (1 + g / 2) for g in (l["inner_gap"], l["outer_gap"]))
-                tail = f" {self.kT!r} {self.case.get('seed', self.scene.get('seed', 1)) % 900000000 + 1}" if name == "lubrication_noise" else ""
+                tail = f" {self.kT!r} {self.seed}" if name == "lubrication_noise" else ""
                 k = a.index(max(a))
                 found.append((f"{head} {inner(k, k)!r} {outer(k, k)!r}{tail} 1 0", [f"{i + 1} {j + 1} {inner(i, j)!r} {outer(i, j)!r}" for i, j in pairs],
                               "forces.lubrication: LAMMPS's own near-field scalars, NOT those of the scene"))
@@ -177,14 +179,14 @@ class Stock:
         kT = self.kT if "drag_noise" in forces else 0
         scale = "".join(f" scale {k + 1} {damp[k] / damp[0]!r}" for k in range(1, len(damp)))
         return (f"# forces.drag: -6 pi eta a (u - U_inf){' and its noise' if kT else ''}; `omega yes` is -8 pi eta a^3 w\n"
-                f"fix drag all langevin {kT!r} {kT!r} {damp[0]!r} {self.scene.get('seed', 1) % 900000000 + 1}{scale}"
+                f"fix drag all langevin {kT!r} {kT!r} {damp[0]!r} {self.seed}{scale}"
                 f" omega {'yes' if self.forces['drag'].get('torque') else 'no'}\nfix_modify drag temp c")
 
     def physics(self, state, forces):
         """The deck from the data file to the fixes, with only these forces."""
         styles = self.pair_styles(forces) or [(f"zero {2 * max(self.radius)!r}", ["* *"], "no pair force")]
-        hybrid = len(styles) > 1
-        lines = ["clear\nunits lj\natom_style sphere\nboundary p p p\nnewton off\ncomm_modify vel yes       # ghosts know velocities: image velocity = rate x cell\nbox tilt large",
+        hybrid, newton = len(styles) > 1, "on" if self.own == "equal" else "off"    # brownian draws anew on each side of a face when off; lubricate/poly refuses on
+        lines = ["clear\nunits lj\natom_style sphere\nboundary p p p\nnewton " + newton + "\ncomm_modify vel yes       # ghosts know velocities: image velocity = rate x cell\nbox tilt large",
                  f"read_data lammps-{state}.data"]
         lines += ["# " + comment for _, _, comment in styles]
         lines.append("pair_style " + ("hybrid/overlay " if hybrid else "") + " ".join(s for s, _, _ in styles))
