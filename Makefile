@@ -100,9 +100,13 @@ $B/obj/tools/audit/%.o: tools/audit/%.c
 $B/audit: $(call objects,$(AUDIT) $(wildcard validation/theory/*.c))
 	$(CC) $(CFLAGS) $^ -o $@ -ljansson -lgsl -lgslcblas -lquadmath -lm
 
-$B/lammps-candidate: tools/lammps/candidate.py
+$B/lammps-candidate: tools/lammps/candidate.py $B/lammps_stock.py $B/lammps_reference.py
 	@mkdir -p $(@D)
 	install -m 755 $< $@
+
+$B/lammps_%.py: tools/lammps/lammps_%.py
+	@mkdir -p $(@D)
+	install -m 644 $< $@
 
 $B/obj/tools/compare/%.o: tools/compare/%.c
 	@mkdir -p $(@D)

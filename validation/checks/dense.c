@@ -139,6 +139,7 @@ bool dense_snapshots(struct check_run *run, const char *out, const struct dense_
 const struct check dense_checks[] = {
     { "dense-viscosities", dense_viscosities },
     { "dense-path", dense_path },
+    { "contact-path", contact_path },
     { "dense-memory", dense_memory },
     { "equation-of-state", check_equation_of_state },
     { NULL, NULL },

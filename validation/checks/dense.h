@@ -36,8 +36,13 @@ bool dense_snapshots(struct check_run *run, const char *out, const struct dense_
 void dense_pair(const struct dense_start *s, const struct dense_snapshot *now, size_t i, size_t j, double d[3]);
 double dense_radius(const struct dense_start *s, size_t i);
 
+/* What happened on a path of spheres in shear along x, gradient y, and how often: summed over the frames of trajectory.csv and slipping.csv. False: recorded already. */
+struct dense_events { size_t made, lost, slipping, sticking, contacts /* in the last frame */, remaps /* cell tilted past half its edge */; };
+bool dense_events_count(struct check_run *run, const struct dense_start *s, const char *out, struct dense_events *e);
+
 void dense_viscosities(struct check_run *run);
 void dense_path(struct check_run *run);
+void contact_path(struct check_run *run);
 void dense_memory(struct check_run *run);
 void check_equation_of_state(struct check_run *run);
 

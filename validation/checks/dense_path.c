@@ -145,16 +145,30 @@ static bool judge_states(struct check_run *run, const struct dense_start *s, cha
     return true;
 }
 
+/* A path that makes, holds and loses no contact, or in which the cell is not remapped, would compare nothing of friction or of images. */
+static void judge_events(struct check_run *run, const struct dense_start *s, const char *reference)
+{
+    struct dense_events e;
+    if (!dense_events_count(run, s, reference, &e))
+        return;
+    const bool all = e.made && e.lost && e.slipping && e.sticking && e.remaps;
+    struct result *r = check_error(run, INVARIANT, "what the path tries", all, 1, all ? 0 : 1, 0.5,
+                                   "on the path %zu contacts are made, %zu lost, %zu slip and %zu stick in the frames looked at, and the cell is "
+                                   "remapped %zu times: none of them may be 0", e.made, e.lost, e.slipping, e.sticking, e.remaps);
+    result_notes(r, "contacts made %zu, lost %zu (seen between frames; more may come and go within), at the end %zu; slipping %zu times and sticking %zu "
+                 "times in the frames looked at; the cell remapped %zu times", e.made, e.lost, e.contacts, e.slipping, e.sticking, e.remaps);
+}
+
 void dense_path(struct check_run *run)
 {
     const json_t *par = run->gate_case->parameters;
-    const double steps = scene_number(par, "steps", 1500), every = scene_number(par, "every", 500);
+    const double steps = scene_number(par, "steps", 1500), every = scene_number(par, "every", 500), watch = scene_number(par, "watch", 0);
     struct dense_start s;
     char out[2][PATH_LENGTH];
     if (!dense_start(run, run->seed, &s))
         return;
     scene_set(s.scene, "run", json_pack("{sI}", "steps", (json_int_t)steps));
-    scene_set(s.scene, "output.states.every", json_integer((json_int_t)every));
+    scene_set(s.scene, "output.states.every", json_integer((json_int_t)(watch > 0 ? watch : every)));
     scene_set(s.scene, "output.stress.every", json_integer((json_int_t)every / 10));
     if (dense_ask_both(run, "path", &s, out, NULL)) {
         const bool friction = scene_number(s.scene, "forces.contact.friction", 0) > 0;
@@ -162,6 +176,8 @@ void dense_path(struct check_run *run)
                                         scene_get(s.scene, "forces.lubrication") ? "lubrication" : NULL };
         double error;
         const bool alike = judge_states(run, &s, out, steps, every);
+        if (watch > 0)
+            judge_events(run, &s, out[1]);
         /* LAMMPS works a frictional pair out anew when it writes it, then with full-step velocities: dashpots spoil that stress. */
         const bool stress = alike && !json_is_false(json_object_get(par, "stress"));
         for (int o = 0; o < 4 && stress; o++)
