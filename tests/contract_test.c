@@ -192,14 +192,14 @@ static void answers_in_plain_text(void)
 static const struct state_row two[] = { { .state = 0, .id = 1, .species = 1 }, { .state = 0, .id = 2, .species = 1, .x = { 3, 0, 0 } } };
 
 /* What the gate says where a candidate does this; the question is for `forces` of two particles. */
-static const char *said_of(const char *script, bool whole)
+static const char *said_of(const char *script)
 {
     static char sentence[3 * WHY_LENGTH];
     json_t *needs = json_array(), *scene = json_object();
     const struct gate_case one = { .name = "case", .about = "about", .needs = needs };
     char command[2048], out[PATH_LENGTH], path[PATH_LENGTH], why[WHY_LENGTH] = "";
     snprintf(command, sizeof command, "sh -c '%s' it", script);
-    const struct candidate c = { .command = command, .seconds = 0.5, .bytes = 1 << 20 };
+    const struct candidate c = { .command = command, .seconds = strncmp(script, "sleep", 5) == 0 ? 0.5 : 30, .bytes = 1 << 20 };    /* machines are busy */
     struct check_run run = { .gate_case = &one, .candidate = &c, .attempt = 1 };
     path_join(run.work, folder, "asked");
     folder_remove(run.work);
@@ -214,8 +214,6 @@ static const char *said_of(const char *script, bool whole)
             forces_free(&f);
     } else
         snprintf(sentence, sizeof sentence, "%s", run.results.item[0].sentence);
-    if (!whole && strlen(sentence) > 400)
-        sentence[400] = '\0';
     results_free(&run.results);
     json_decref(scene);
     json_decref(needs);
@@ -224,7 +222,7 @@ static const char *said_of(const char *script, bool whole)
 
 static void says(const char *script, const char *expected)
 {
-    const char *sentence = said_of(script, true);
+    const char *sentence = said_of(script);
     check_true(strstr(sentence, expected) != NULL, sentence);
 }
 
@@ -257,19 +255,20 @@ static void misbehaviour_is_a_verdict(void)
     says("sleep 9", "candidate hung: it was killed after 0.5 s");
     says("kill -SEGV $$", "candidate crashed with signal 11");
     says("echo no input >&2; exit 4", "candidate ended with exit code 4: no input");
-    says("head -c 3000000 /dev/zero >\"$2\"/f; sleep 3", "candidate wrote more than 1 MB");
+    says("for k in 1 2 3; do head -c 700000 /dev/zero >\"$2\"/$k; done; sleep 9", "candidate wrote more than 1 MB");
     says("head -c 3000000 /dev/urandom; sleep 3", "candidate wrote more than 1 MB");
     says("head -c 100000 /dev/urandom; " HEADER ROW1 ROW2, "nothing");     /* garbage on stdout alone harms nobody */
     says("echo I have no torque; exit 77", "does not support this (exit code 77): I have no torque");
     json_t *needs = json_array(), *scene = json_object();
     const struct gate_case one = { .name = "case", .about = "about", .needs = needs };
-    const struct candidate c = { .command = written("not-executable", "x"), .seconds = 1, .bytes = 1 << 20 };
+    const struct candidate c = { .command = written("not-executable", "x"), .seconds = 30, .bytes = 1 << 20 };
     struct check_run run = { .gate_case = &one, .candidate = &c, .attempt = 1 };
     char out[PATH_LENGTH], hex[17];
     path_join(run.work, folder, "asked");
     const struct question q = { .protocol = "forces", .scene = scene, .state = two, .states = 2 };
     check_true(!candidate_hash(&c, hex), "a file that cannot be executed is no program");
-    check_true(!check_ask(&run, "pair", &q, out) && strstr(run.results.item[0].sentence, "exit code 126"), run.results.item[0].sentence);
+    check_true(!check_ask(&run, "pair", &q, out) && run.results.count == 1, "it gives no answer");
+    check_true(strstr(run.results.item[0].sentence, "exit code 126") != NULL, run.results.item[0].sentence);
     results_free(&run.results);
     json_decref(scene);
     json_decref(needs);
@@ -322,7 +321,7 @@ static void one_start_serves_all(void)
     chmod(program, 0755);
     path_join(log, folder, "server.log");
     struct candidate_server server;
-    const struct candidate c = { .command = program, .seconds = 1, .bytes = 1 << 20, .server = &server };
+    const struct candidate c = { .command = program, .seconds = 3, .bytes = 1 << 20, .server = &server };
     struct candidate_answer a;
     candidate_server_start(&server, &c, log);
     check_true(ask_server(&c, "answer", &a) == CANDIDATE_OK && strcmp(content_of("a/file"), "done\n") == 0, a.message);
@@ -333,14 +332,14 @@ static void one_start_serves_all(void)
     check_true(ask_server(&c, "crash", &a) == CANDIDATE_CRASHED && a.detail == SIGSEGV, a.message);
     check_true(ask_server(&c, "answer", &a) == CANDIDATE_OK, a.message);
     check_close(starts(), 2, 0, "started anew after a crash");
-    check_true(ask_server(&c, "hang", &a) == CANDIDATE_HUNG && a.seconds < 5, a.message);
+    check_true(ask_server(&c, "hang", &a) == CANDIDATE_HUNG && a.seconds < 20, a.message);
     check_true(ask_server(&c, "end", &a) == CANDIDATE_FAILED && strstr(a.message, "ended before it answered"), a.message);
     check_true(ask_server(&c, "flood", &a) == CANDIDATE_FLOODED, a.message);
     check_true(ask_server(&c, "answer", &a) == CANDIDATE_OK, a.message);
     check_close(starts(), 5, 0, "and after every other end");
     check_true(ask_server(&c, "disk", &a) != CANDIDATE_CRASHED, a.message);
     candidate_server_stop(&server);
-    const struct candidate lost = { .command = "/no/such/program", .seconds = 1, .bytes = 1 << 20, .server = &server };
+    const struct candidate lost = { .command = "/no/such/program", .seconds = 30, .bytes = 1 << 20, .server = &server };
     candidate_server_start(&server, &lost, log);
     check_true(ask_server(&lost, "answer", &a) == CANDIDATE_FAILED && a.detail == 127, a.message);
     candidate_server_stop(&server);
