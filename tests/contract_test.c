@@ -321,7 +321,9 @@ static void one_start_serves_all(void)
     chmod(program, 0755);
     path_join(log, folder, "server.log");
     struct candidate_server server;
-    const struct candidate c = { .command = program, .seconds = 3, .bytes = 1 << 20, .server = &server };
+    const struct candidate c = { .command = program, .seconds = 60, .bytes = 1 << 20, .server = &server };
+    struct candidate hasty = c;
+    hasty.seconds = 2;
     struct candidate_answer a;
     candidate_server_start(&server, &c, log);
     check_true(ask_server(&c, "answer", &a) == CANDIDATE_OK && strcmp(content_of("a/file"), "done\n") == 0, a.message);
@@ -332,7 +334,7 @@ static void one_start_serves_all(void)
     check_true(ask_server(&c, "crash", &a) == CANDIDATE_CRASHED && a.detail == SIGSEGV, a.message);
     check_true(ask_server(&c, "answer", &a) == CANDIDATE_OK, a.message);
     check_close(starts(), 2, 0, "started anew after a crash");
-    check_true(ask_server(&c, "hang", &a) == CANDIDATE_HUNG && a.seconds < 20, a.message);
+    check_true(ask_server(&hasty, "hang", &a) == CANDIDATE_HUNG && a.seconds < 20, a.message);
     check_true(ask_server(&c, "end", &a) == CANDIDATE_FAILED && strstr(a.message, "ended before it answered"), a.message);
     check_true(ask_server(&c, "flood", &a) == CANDIDATE_FLOODED, a.message);
     check_true(ask_server(&c, "answer", &a) == CANDIDATE_OK, a.message);
