@@ -34,9 +34,10 @@ endif
 validate: all ## the fast tier against our own solver, and its report
 	$B/gate run --candidate "$B/shear --evaluate" --jobs $(JOBS) --work $B/cases --report $B/report
 
-test: ## build and run the unit tests
+test: ## build and run the unit tests, and run the CI files of tools/ci
 	@$(MAKE) $(PARALLEL) $(PROGRAMS) $B/unit-tests
 	$B/unit-tests
+	@tools/ci/check.sh $B
 
 # ---- programs ----
 
@@ -74,7 +75,7 @@ $B/gate: $(call objects,$(GATE))
 	$(CC) $(CFLAGS) $^ -o $@ -ljansson -lgsl -lgslcblas -lm
 
 # The gate's own resistances inside LAMMPS's library: a second code where stock styles are wrong.
-$B/lammps-host: $B/obj/tools/lammps/host.o $B/obj/validation/theory/resistance.o
+$B/lammps-host: $B/obj/tools/lammps/host.o $B/obj/validation/theory/resistance.o $B/obj/validation/theory/repulsion.o
 	$(CC) $(CFLAGS) $^ -o $@ -llammps -lm
 
 $B/obj/tools/lammps/%.o: tools/lammps/%.c
@@ -99,9 +100,13 @@ $B/obj/tools/audit/%.o: tools/audit/%.c
 $B/audit: $(call objects,$(AUDIT) $(wildcard validation/theory/*.c))
 	$(CC) $(CFLAGS) $^ -o $@ -ljansson -lgsl -lgslcblas -lquadmath -lm
 
-$B/lammps-candidate: tools/lammps/candidate.py
+$B/lammps-candidate: tools/lammps/candidate.py $B/lammps_stock.py $B/lammps_reference.py
 	@mkdir -p $(@D)
 	install -m 755 $< $@
+
+$B/lammps_%.py: tools/lammps/lammps_%.py
+	@mkdir -p $(@D)
+	install -m 644 $< $@
 
 $B/obj/tools/compare/%.o: tools/compare/%.c
 	@mkdir -p $(@D)
@@ -151,6 +156,13 @@ bench: all ## particle-steps per second and instructions per particle-step, besi
 scaling: all ## time of a step against the number of spheres, 1e2 to 1e5 (exponent at most 1.08)
 	@tools/bench/scaling.sh $B
 
+VISCOSITIES := $(shell cd validation/cases/6-dense && echo viscosities-* | tr ' ' ',')
+golden: all ## sheared viscosities, code against code: hours of two cores, kept row by row in golden/viscosities; goes on where it stopped
+	$B/gate run --candidate "$B/shear --evaluate" --tier full --case $(VISCOSITIES) --jobs $(JOBS) --keep golden/viscosities --work $B/golden-cases --report $B/golden-report
+	@golden/viscosities/page.py golden/viscosities docs/viscosities.md
+	@cd golden/viscosities && gnuplot plot.gp
+	@echo "golden: $$(grep -c ',viscosity,' golden/viscosities/*-table.csv | awk -F: '{ n += $$2 } END { print n }') rows agree, see golden/viscosities and docs/viscosities.md"
+
 engine: all $B/unit-tests ## shear-lammps against shear, pathwise on 1, 2 and 4 ranks; restart; broken engines must be seen
 	@tools/engine/measure.sh $B
 
@@ -160,10 +172,15 @@ engine-cost: all ## a step of shear-lammps against one of shear, and on 2 ranks 
 second-opinion: ## LAMMPS's lubrication and noise styles, coefficient by coefficient (docs/lammps.md)
 	@python3 tools/lammps/coefficients.py
 
+ci-files: $B/shear ## run tools/ci/*.yml as GitHub and GitLab would, with a right and a wrong candidate
+	@tools/ci/check.sh $B
+
+suite-manifest: $B/gate ## freeze what the suite asks and how strictly (validation/suite-1.0.json); once, when it is released
+	$B/gate freeze
+
 vectors: all ## golden/vectors against what makes them (same bytes) and against our solver
 	@$(MAKE) $(PARALLEL) $B/vectors
 	@python3 tools/golden/check.py $B
-
 audit: ## golden vectors and closed forms of the gate, recomputed in quadruple precision by other derivations
 	@$(MAKE) $(PARALLEL) $B/audit
 	@$B/audit
@@ -177,5 +194,6 @@ help: ## this list
 clean: ## remove build/
 	rm -rf $B
 
-.PHONY: all setup validate test lines coverage sanitize memcheck scenes faults calibrate bench scaling engine engine-cost second-opinion vectors audit work-precision help clean FORCE
+.PHONY: all setup validate test lines coverage sanitize memcheck scenes faults calibrate bench scaling golden engine engine-cost second-opinion ci-files \
+	suite-manifest vectors audit work-precision help clean FORCE
 -include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS) $(ENGINE) $(GOLDEN) $(AUDIT) tools/compare/checkpoints.c))

@@ -2,7 +2,7 @@
 #ifndef RUN_H
 #define RUN_H
 
-#include "report.h"
+#include "known.h"
 
 struct run_plan {
     const struct gate_case **gate_case; /* in the order in which they start */
@@ -12,6 +12,8 @@ struct run_plan {
     int jobs;
     int p_values;                       /* of the whole suite */
     unsigned seed_offset;
+    const char *keep;                   /* check.h */
+    const struct known_list *known;     /* accepted failures; null: none */
 };
 
 /* Fills done[k] for plan->gate_case[k]; calls `completed` as each ends. */
