@@ -84,6 +84,7 @@ void audit_vectors(const char *folder);
 void audit_pairs(void);
 void audit_spheres(void);
 void audit_collisions(void);
+void audit_impacts(void);
 void audit_motion(void);
 void audit_crowds(void);
 

@@ -1,5 +1,5 @@
 /*
- * audit [AREA ...]: everything once more, by other derivations (audit.h), or some areas of it: vectors, series, spheres, collisions, motion, crowds.
+ * audit [AREA ...]: everything once more, by other derivations (audit.h), or some areas of it: vectors, series, spheres, collisions, impacts, motion, crowds.
  * Run where golden/ and validation/ are.
  */
 #include "audit.h"
@@ -11,7 +11,8 @@ static void audit_golden(void) { audit_vectors("golden/vectors"); }
 
 static const struct { const char *name; void (*run)(void); } area[] = {
     { "vectors", audit_golden },        { "series", audit_two_spheres }, { "spheres", audit_spheres },
-    { "collisions", audit_collisions }, { "motion", audit_motion },      { "crowds", audit_crowds },
+    { "collisions", audit_collisions }, { "impacts", audit_impacts },    { "motion", audit_motion },
+    { "crowds", audit_crowds },
 };
 enum { AREAS = sizeof area / sizeof *area };
 
@@ -22,7 +23,7 @@ int main(int argc, char **argv)
         for (int a = 0; a < AREAS; a++)
             known = known || strcmp(argv[k], area[a].name) == 0;
         if (!known) {
-            fprintf(stderr, "audit: there is no area '%s'; there are vectors, series, spheres, collisions, motion, crowds\n", argv[k]);
+            fprintf(stderr, "audit: there is no area '%s'; there are vectors, series, spheres, collisions, impacts, motion, crowds\n", argv[k]);
             return 2;
         }
     }

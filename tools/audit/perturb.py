@@ -6,8 +6,8 @@ Usage: perturb.py BUILD [FILE.c ...]    (after `make audit`; all files without m
 """
 import glob, os, re, subprocess, sys
 
-AREAS = {"resistance.c": "vectors", "contact.c": "vectors", "contact_laws.c": "vectors", "drag.c": "vectors", "repulsion.c": "vectors", "langevin.c": "spheres",
-         "free_sphere.c": "spheres", "driven_sphere.c": "spheres", "collision.c": "collisions", "pair_motion.c": "motion", "encounters.c": "motion",
+AREAS = {"resistance.c": "vectors", "contact.c": "vectors", "contact_laws.c": "vectors collisions", "drag.c": "vectors", "repulsion.c": "vectors", "langevin.c": "spheres",
+         "free_sphere.c": "spheres", "driven_sphere.c": "spheres", "collision.c": "collisions impacts", "pair_motion.c": "motion", "encounters.c": "motion",
          "dilute.c": "crowds", "crowd.c": "crowds", "structural_stress.c": "crowds", "hard_spheres.c": "crowds"}
 
 
@@ -36,7 +36,7 @@ def main(build, wanted):
             program = os.path.join(work, "audit")
             subprocess.run(["cc", "-std=c11", "-D_XOPEN_SOURCE=700", "-O1", "-ffp-contract=off", "-Ivalidation/theory", wrong, *objects, "-ljansson", "-lgsl", "-lgslcblas",
                             "-lquadmath", "-lm", "-o", program], check=True)
-            code = subprocess.run([program, AREAS[name]], capture_output=True, text=True)
+            code = subprocess.run([program, *AREAS[name].split()], capture_output=True, text=True)
             where = f"{name}:{line} {word}: {text.splitlines()[line - 1].strip()[:100]}"
             if code.returncode == 1:
                 seen += 1
