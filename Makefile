@@ -185,6 +185,9 @@ audit: ## golden vectors and closed forms of the gate, recomputed in quadruple p
 	@$(MAKE) $(PARALLEL) $B/audit
 	@$B/audit
 
+verdicts: ## docs/verdicts.md against the cases and the results of the last make validate
+	@python3 tools/docs/verdicts.py --run
+
 work-precision: all ## seconds for 1 % of the pairs near contact, by integrator and step (about 5 minutes; keeps finished rows)
 	@tools/work-precision.sh $B
 
@@ -195,5 +198,5 @@ clean: ## remove build/
 	rm -rf $B
 
 .PHONY: all setup validate test lines coverage sanitize memcheck scenes faults calibrate bench scaling golden engine engine-cost second-opinion ci-files \
-	suite-manifest vectors audit work-precision help clean FORCE
+	suite-manifest vectors audit verdicts work-precision help clean FORCE
 -include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS) $(ENGINE) $(GOLDEN) $(AUDIT) tools/compare/checkpoints.c))
