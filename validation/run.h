@@ -12,6 +12,7 @@ struct run_plan {
     int jobs;
     int p_values;                       /* of the whole suite */
     unsigned seed_offset;
+    const char *offline;                /* the folder of exported questions, or null: ask the candidate */
 };
 
 /* Fills done[k] for plan->gate_case[k]; calls `completed` as each ends. */
