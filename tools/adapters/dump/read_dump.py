@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""ADAPTER CASE_DIR OUT_DIR: finished runs as a candidate of the gate at level C (docs/adapter.md). For a question in .../NAME/case the run is
-expected in .../NAME/run, where `gate export` leaves room for it:
+"""read_dump.py [--runs DIR] CASE_DIR OUT_DIR: finished runs as a candidate of the gate at level C (docs/adapter.md). The run of a question is a
+folder `run` beside its `case`, or DIR/<name in case.json>/run:
 
   dump.lammpstrj   LAMMPS text dump with id, x y z, vx vy vz, and omegax omegay omegaz where spheres turn. With ix iy iz the frames may lie
                    as far apart as they like; without, near enough for no sphere to stray a quarter of a cell from where its velocity takes it.
@@ -17,6 +17,7 @@ import sys
 
 PRESSURE = "xx yy zz xy xz yz".split()
 NINE = [a + b for a in "xyz" for b in "xyz"]
+ORIGINS = "contact_normal contact_tangential repulsion lubrication drag lubrication_noise kinetic".split()
 
 
 def refuse(reason):
@@ -50,6 +51,8 @@ class Flow:
         self.gradient = [[0.0] * 3 for _ in range(3)]
         for shear in scene.get("shear", []):
             self.gradient["xyz".index(shear["flow"])]["xyz".index(shear["gradient"])] += shear["rate"]
+        a, b, c = zip(*self.cell)
+        self.volume = abs(sum(p * (b[i - 2] * c[i - 1] - b[i - 1] * c[i - 2]) for i, p in enumerate(a)))
         self.rate = max((abs(s["rate"]) for s in scene.get("shear", [])), default=0.0)
 
     def carry(self, x, time):
@@ -136,7 +139,7 @@ def trajectory(run, out, scene, case_dir, dt):
 def stresses(run, out, scene, dt):
     rate, rows, first = Flow(scene).rate, [], None
     for row in table(os.path.join(run, "stress.csv")):
-        origins = dict.fromkeys(name.rsplit("_", 1)[0] for name in row if "_" in name)
+        origins = [o for o in ORIGINS if o + "_xx" in row or o + "_pxx" in row]
         values = []
         for origin in origins:
             if origin + "_pxx" in row:
@@ -152,10 +155,10 @@ def stresses(run, out, scene, dt):
     write(os.path.join(out, "stress.csv"), ["step", "time", "strain"] + [f"{o}_{k}" for o in origins for k in NINE], rows)
 
 
-def main(case_dir, out):
+def main(case_dir, out, runs=None):
     case = json.load(open(os.path.join(case_dir, "case.json")))
     scene = json.load(open(os.path.join(case_dir, case["scene"])))
-    run = os.path.join(os.path.dirname(os.path.normpath(case_dir)), "run")
+    run = os.path.join(runs, case["name"], "run") if runs else os.path.join(os.path.dirname(os.path.normpath(case_dir)), "run")
     if case["protocol"] != "run":
         refuse("protocol " + case["protocol"])
     if not os.path.exists(os.path.join(run, "dump.lammpstrj")):
@@ -170,4 +173,4 @@ def main(case_dir, out):
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    main(*sys.argv[3:], sys.argv[2]) if sys.argv[1] == "--runs" else main(*sys.argv[1:])

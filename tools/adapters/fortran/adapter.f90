@@ -22,6 +22,7 @@ program adapter
    call get_command_argument(1, folder)
    call get_command_argument(2, answer)
    call read_case()
+   if (all(['forces', 'noise '] /= word('case.protocol'))) call refuse('protocol '//trim(word('case.protocol')))
    do k = 1, size(names)
       key = pattern(names(k)(7:))      ! without "scene."
       if (index(names(k), 'scene.') == 1 .and. .not. any(known == key)) call refuse(trim(names(k)))
@@ -30,14 +31,11 @@ program adapter
    if (word('scene.forces.contact.law') /= '' .and. word('scene.forces.contact.law') /= 'plain') call refuse('other friction laws')
    call set_constants()
    call read_tables()
-   select case (word('case.protocol'))
-   case ('forces')
+   if (word('case.protocol') == 'forces') then
       call answer_forces()
-   case ('noise')
-      if (number('scene.fluid.kT') > 0) call answer_noise()
-   case default
-      call refuse('protocol '//trim(word('case.protocol')))
-   end select
+   else
+      call answer_noise()
+   end if
 
 contains
 

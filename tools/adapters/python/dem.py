@@ -34,7 +34,7 @@ class Spheres:
     """One system. `cell`: three cell vectors at time 0; `gradient[i][k]`: dU_i/dx_k; `forces`: their constants as in a scene;
     `histories`: {(i, j): displacement of the surface of i against that of j}, i < j."""
 
-    def __init__(self, x, u, w, radius, density, cell, periodic, gradient, viscosity, forces, dt, time=0.0, histories=None):
+    def __init__(self, x, u, w, radius, density, cell, periodic, gradient, viscosity, forces, dt, time=0.0, histories=None, turns=None):
         self.x, self.u, self.w, self.a = list(x), list(u), list(w), radius
         self.mass = [4 / 3 * pi * rho * a ** 3 for rho, a in zip(density, radius)]
         self.inertia = [0.4 * m * a * a for m, a in zip(self.mass, radius)]
@@ -42,18 +42,18 @@ class Spheres:
         self.spin0 = (0.5 * (gradient[2][1] - gradient[1][2]), 0.5 * (gradient[0][2] - gradient[2][0]), 0.5 * (gradient[1][0] - gradient[0][1]))
         self.contact, self.drag, self.lubrication = forces.get("contact"), forces.get("drag"), forces.get("lubrication")
         self.friction = self.contact["friction"] if self.contact else 0
-        self.turns = bool(self.friction or self.lubrication or self.drag and self.drag["torque"])
+        self.turns = turns if turns is not None else bool(self.friction or self.lubrication or self.drag and self.drag["torque"])
         if not self.turns:
             self.w = [(0.0, 0.0, 0.0)] * len(self.w)
         self.turned = [(0.0, 0.0, 0.0)] * len(self.x)
         self.origins = [o for f in ORIGINS if f in forces for o in ORIGINS[f] if o != "contact_tangential" or self.friction] + ["kinetic"]
         self.given, self.histories, self.near, self.slack = histories or {}, {}, [], -1.0
         self.set_cell()
-        self.add_forces(0.0)
+        self.add_forces(0.0, True)
         self.given = {}
 
     def set_cell(self):
-        """H(t) = (1 + G t + G G t^2/2) H(0), and the least distance that pairs must come nearer by before the list of pairs is stale."""
+        """H(t) = (1 + G t + G G t^2/2) H(0)."""
         moved = [plus(plus(c, apply(self.gradient, c), self.time), apply(self.gradient, apply(self.gradient, c)), 0.5 * self.time ** 2) for c in self.cell0]
         self.cell, self.volume = moved, abs(dot(moved[0], cross(moved[1], moved[2])))
 
@@ -90,11 +90,12 @@ class Spheres:
             self.list_pairs()
             self.slack = self.skin
 
-    def add_forces(self, drift):
-        """Forces, torques and stresses of the present places and velocities; histories advance by the slip of a drift of that duration."""
+    def add_forces(self, drift, book):
+        """Forces and torques (and stresses, if they are to be booked) of the present places and velocities; histories advance by the slip
+        of a drift of that duration."""
         n = len(self.x)
         self.force, self.torque = [(0.0, 0.0, 0.0)] * n, [(0.0, 0.0, 0.0)] * n
-        self.stress = {o: [0.0] * 9 for o in self.origins}
+        self.stress = {o: [0.0] * 9 for o in self.origins} if book else None
         self.keep_list(drift)
         kept = {}
         for i, j, s in self.near:
@@ -113,9 +114,12 @@ class Spheres:
             self.add_drag()
 
     def on_pair(self, i, j, d, origin, force, torque_i, torque_j):
-        self.force[i], self.force[j] = plus(self.force[i], force), plus(self.force[j], force, -1)
-        self.torque[i], self.torque[j] = plus(self.torque[i], torque_i), plus(self.torque[j], torque_j)
-        self.stress[origin] = [s + f * p / self.volume for s, (f, p) in zip(self.stress[origin], product(force, d))]
+        self.force[i] = plus(self.force[i], force)
+        self.force[j] = plus(self.force[j], force, -1)          # one after the other: i and j may be the same sphere
+        self.torque[i] = plus(self.torque[i], torque_i)
+        self.torque[j] = plus(self.torque[j], torque_j)
+        if self.stress:
+            self.stress[origin] = [s + f * p / self.volume for s, (f, p) in zip(self.stress[origin], product(force, d))]
 
     def touch(self, i, j, s, d, r, gap, normal, du, drift, kept):
         contact, zero = self.contact, (0.0, 0.0, 0.0)
@@ -160,7 +164,8 @@ class Spheres:
             self.force[i] = plus(self.force[i], self.peculiar(i), -6 * pi * self.eta * a)
             if self.drag["torque"]:
                 self.torque[i] = plus(self.torque[i], plus(self.spin0, self.w[i], -1), 8 * pi * self.eta * a ** 3)
-            self.stress["drag"] = [s + 20 / 3 * pi * self.eta * a ** 3 * e / self.volume for s, e in zip(self.stress["drag"], strain)]
+            if self.stress:
+                self.stress["drag"] = [s + 20 / 3 * pi * self.eta * a ** 3 * e / self.volume for s, e in zip(self.stress["drag"], strain)]
 
     def kick(self):
         for i in range(len(self.x)):
@@ -168,7 +173,7 @@ class Spheres:
             if self.turns:
                 self.w[i] = plus(self.w[i], self.torque[i], 0.5 * self.dt / self.inertia[i])
 
-    def step(self, new_time):
+    def step(self, new_time, book=False):
         """Kick dt/2, drift dt, cell to the new time, forces at the half-step velocities, kick dt/2."""
         self.kick()
         for i in range(len(self.x)):
@@ -176,7 +181,7 @@ class Spheres:
             self.turned[i] = plus(self.turned[i], self.w[i], self.dt)
         self.time = new_time
         self.set_cell()
-        self.add_forces(self.dt)
+        self.add_forces(self.dt, book)
         self.kick()
 
     def stresses(self):
