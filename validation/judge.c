@@ -5,6 +5,7 @@
 #include "judge.h"
 
 #include "offline.h"
+#include "precision.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -86,6 +87,7 @@ void judge_case(struct check_run *run, const struct check *check, int p_values, 
         return;
     adapted.scene = json_deep_copy(c->scene);
     capabilities_into_scene(run->candidate->capabilities, adapted.scene);
+    adapted.parameters = precision_parameters(run->candidate->capabilities, c->parameters, adapted.scene);
     run->gate_case = &adapted;
     if (offline)
         offline_judge(run, check, p_values, seed_offset, offline);
@@ -94,4 +96,5 @@ void judge_case(struct check_run *run, const struct check *check, int p_values, 
     look_for_conventions(run, check);
     run->gate_case = c;
     json_decref(adapted.scene);
+    json_decref(adapted.parameters);
 }

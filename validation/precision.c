@@ -93,3 +93,26 @@ void precision_allow(struct check_run *run, const struct question *q)
     allow(run, 4 * C * sqrt(n) * c->roundoff, "for %s: 4 x roundoff %.2g x condition %.3g%s", c->precision, c->roundoff, C,
           moves ? " x root of the number of steps" : "");
 }
+
+static void leave_out(json_t *parameters, const char *key, double edge, double width)
+{
+    json_t *list = json_object_get(parameters, key);
+    for (size_t k = json_array_size(list); k-- > 0;)
+        if (fabs(json_number_value(json_array_get(list, k)) - edge) <= width)
+            json_array_remove(list, k);
+}
+
+json_t *precision_parameters(const struct capabilities *c, const json_t *parameters, const json_t *scene)
+{
+    json_t *mine = json_deep_copy(parameters);
+    if (!c || c->roundoff == 0 || !mine)
+        return mine;
+    const double width = 40 * c->roundoff;      /* positions of up to ten sums of radii, each rounded twice */
+    if (scene_get(scene, "forces.contact"))
+        leave_out(mine, "xi", 0, width);
+    if (scene_get(scene, "forces.lubrication"))
+        leave_out(mine, "xi", scene_number(scene, "forces.lubrication.outer_gap", NAN), width);
+    if (scene_get(scene, "forces.repulsion"))
+        leave_out(mine, "kappas", scene_number(scene, "forces.repulsion.cutoff", NAN), width / scene_number(scene, "forces.repulsion.kappa_factor", NAN));
+    return mine;
+}

@@ -17,6 +17,11 @@ double question_steps(const json_t *scene);
 double question_dt(const json_t *scene);
 /* Raises run->allowance for this question, where the candidate is no double. */
 void precision_allow(struct check_run *run, const struct question *q);
+/*
+ * Takes gaps out of the parameters of a case ("xi", "kappas") that lie so close to where a force begins or ends that rounded positions may be on the other
+ * side. Returns parameters that the caller owns.
+ */
+json_t *precision_parameters(const struct capabilities *c, const json_t *parameters, const json_t *scene);
 /* Raises run->allowance to this, with a reason that begins "for". */
 void allow(struct check_run *run, double allowance, const char *reason, ...) __attribute__((format(printf, 3, 4)));
 
