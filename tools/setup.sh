@@ -1,7 +1,7 @@
 #!/bin/sh
 # Installs what building, testing and comparing needs; says nothing and does nothing where all of it is there.
 set -eu
-packages="gcc make libc6-dev libjansson-dev librandom123-dev libgsl-dev libcunit1-dev lammps liblammps-dev openmpi-bin libopenmpi-dev pkg-config gnuplot-nox valgrind gcovr libxml2-utils jq perl python3 git"
+packages="gcc gfortran make libc6-dev libjansson-dev librandom123-dev libgsl-dev libcunit1-dev lammps liblammps-dev openmpi-bin libopenmpi-dev pkg-config gnuplot-nox valgrind gcovr libxml2-utils jq perl python3 git"
 
 missing=""
 if command -v dpkg-query >/dev/null 2>&1; then

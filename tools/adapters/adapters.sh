@@ -5,6 +5,7 @@ set -eu
 B=${1:-build}; every=${2:-}
 here=tools/adapters
 W=$B/adapters
+export PYTHONDONTWRITEBYTECODE=1
 mkdir -p "$W"
 passed=0; skipped=0; caught=0; bad=""
 
