@@ -323,6 +323,25 @@ static void a_term_without_quantity_is_a_mistake(void)
     json_decref(one.terms);
 }
 
+/* A state upstream carries the day on which it was read, or says that it is not known. */
+static void every_flag_says_what_is_known_upstream(void)
+{
+    static const char *const honest[] = { "(thread as stored, read 20", "not known", "no report known to us", "known to us on 20", "measured by us",
+                                          "nothing to mend" };
+    const char *flag;
+    json_t *entry, *flags = json_load_file("validation/flags.json", JSON_REJECT_DUPLICATES, NULL);
+    check_true(json_object_size(flags) > 0, "flags.json");
+    json_object_foreach(flags, flag, entry)
+    {
+        const char *upstream = json_string_value(json_object_get(entry, "upstream"));
+        bool said = false;
+        for (size_t k = 0; k < sizeof honest / sizeof *honest; k++)
+            said = said || (upstream && strstr(upstream, honest[k]));
+        check_true(said && json_object_size(entry) == 4, flag);
+    }
+    json_decref(flags);
+}
+
 static void first(void)
 {
     check_true(mkdtemp(folder) != NULL, "a folder to work in");
@@ -343,6 +362,7 @@ static const struct unit_test tests[] = {
     { "accepted failures from outside", accepted_failures_from_outside },
     { "GitHub is told at most ten times", github_is_told_at_most_ten_times },
     { "GitHub from outside", github_from_outside },
+    { "every flag says what is known upstream", every_flag_says_what_is_known_upstream },
     { "every term is covered", every_term_is_covered },
     { "coverage says what was judged", coverage_says_what_was_judged },
     { "a term without quantity is a mistake", a_term_without_quantity_is_a_mistake },

@@ -316,8 +316,9 @@ static int explain(const char *flag, const char *suite_dir)
     if (entry && !cases_load(folder, &suite, why))
         code = usage("%s", why);
     else if (entry) {
-        printf("%s\n\n  mistake   %s\n  effect    %s\n  seen      %s\n  cases    ", flag, json_string_value(json_object_get(entry, "mistake")),
-               json_string_value(json_object_get(entry, "effect")), json_string_value(json_object_get(entry, "seen")));
+        printf("%s\n\n  mistake   %s\n  effect    %s\n  seen      %s\n  upstream  %s\n  cases    ", flag, json_string_value(json_object_get(entry, "mistake")),
+               json_string_value(json_object_get(entry, "effect")), json_string_value(json_object_get(entry, "seen")),
+               json_string_value(json_object_get(entry, "upstream")));
         for (size_t k = 0; k < suite.count; k++)
             if (case_lists(suite.item[k].flags, flag))
                 printf(" %s", suite.item[k].name);
