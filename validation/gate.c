@@ -79,7 +79,7 @@ static void find_suite(char folder[PATH_LENGTH])
     const ssize_t n = readlink("/proc/self/exe", program, sizeof program - 1);
     snprintf(folder, PATH_LENGTH, "validation");
     for (ssize_t k = n; k > 0; k--) {
-        if (program[k] != '/' && k != n)
+        if (k != n && program[k] != '/')
             continue;
         program[k] = '\0';
         path_join(guess, program, "validation/cases");
