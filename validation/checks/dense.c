@@ -110,7 +110,7 @@ bool dense_snapshots(struct check_run *run, const char *out, const struct dense_
     struct table t;
     double *frame[3] = { calloc(3 * s->count, sizeof **frame), calloc(3 * s->count, sizeof **frame), calloc(3 * s->count, sizeof **frame) };
     path_join(path, out, "trajectory.csv");
-    const bool memory = frame[0] && frame[1] && frame[2], read = memory && table_read(path, "step,time,id,x,y,z,ux,uy,uz,wx,wy,wz", &t, why);
+    const bool memory = frame[0] && frame[1] && frame[2], read = memory && table_read(path, "step,time,id,x,y,z,ux?,uy?,uz?,wx?,wy?,wz?", &t, why);
     size_t in_frame = 0, frames = 0;
     for (size_t r = 0; read && r < t.rows; r++) {
         const double id = table_at(&t, r, 2), time = table_at(&t, r, 1);
