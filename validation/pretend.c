@@ -123,8 +123,8 @@ static bool pretend_run(struct invention *i, const struct question *q, const cha
         if (s + tables <= n)
             invent_row(i, stress, 63);
         else    /* whatever was held together has parted */
-            for (int k = 0; k < 63; k++)
-                fputs(k < 62 ? ",0" : ",0\n", stress);
+            for (int c = 0; c < 63; c++)
+                fputs(c < 62 ? ",0" : ",0\n", stress);
     }
     fclose(file);
     return fclose(stress) == 0;
