@@ -32,9 +32,9 @@ END
     case $file in fortran/*) fortran "$W/$name/fortran" "$W/$name/spheres" ;; esac
     "$B/gate" run --candidate "$*" --capabilities "$(ls "$here/${file%%/*}/"*capabilities.json)" --case "$cases" --jobs 2 \
         --work "$W/$name/cases" --report "$W/$name/report" >"$W/$name.txt" 2>&1 && code=0 || code=$?
-    said=$(tr '\n' ' ' <"$W/$name.txt" | tr -s ' ' | grep -oE "fails: .*" | sed 's/ fails: /\n/g' | grep -F "$words" | head -n 1 || true)
+    said=$(sed '/^report:/,$d' "$W/$name.txt" | tr '\n' ' ' | tr -s ' ' | sed 's/ fails: /\nfails: /g' | grep '^fails:' | grep -F "$words" | head -n 1 || true)
     echo "$name: $new"
-    echo "    ${said:-not named: $words}" | cut -c1-300
+    echo "    ${said:-not named: $words}"
     if [ "$code" = 1 ] && [ -n "$said" ]; then caught=$((caught + 1)); else bad="$bad $name"; fi
 }
 
