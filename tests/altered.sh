@@ -8,6 +8,6 @@ for word; do
     n=$((n - 1))
     if [ $n -ge 2 ]; then command="$command $word"; elif [ $n -eq 1 ]; then question=$word; else answer=$word; fi
 done
-copy=$answer.question
+copy=$answer.altered
 mkdir -p "$copy" && cp "$question"/* "$copy" && sed "$script" "$question/scene.json" >"$copy/scene.json" || exit 1
 $command "$copy" "$answer"

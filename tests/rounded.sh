@@ -12,7 +12,7 @@ rounded() {     # from, to: every field with a point or an exponent
     awk -F, -v OFS=, -v form="%.${digits}g" '/^#/ || !/[0-9]/ { print; next }
         { for (k = 1; k <= NF; k++) if ($k ~ /^[-+]?[0-9.]+([eE][-+]?[0-9]+)?$/ && $k ~ /[.eE]/) $k = sprintf(form, $k); print }' "$1" >"$2"
 }
-copy=$answer.question
+copy=$answer.rounded
 mkdir -p "$copy" && cp "$question"/* "$copy" || exit 1
 for table in states contacts; do
     if [ -e "$question/$table.csv" ]; then rounded "$question/$table.csv" "$copy/$table.csv"; fi
