@@ -1,5 +1,5 @@
 /*
- * gate: judges any program that computes suspension physics, through files (docs/formats.md). It never links the solver.
+ * gate: judges any program that computes suspension physics, through files (docs/adapter.md). It never links the solver.
  *
  * This file is the command line: which cases, in which order, against which candidate, and what is written where.
  */
