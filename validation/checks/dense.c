@@ -3,6 +3,7 @@
  */
 #include "dense.h"
 #include "sheared_point.h"
+#include "../offline.h"
 #include "../packing.h"
 
 #include <math.h>
@@ -63,6 +64,12 @@ bool dense_ask_both(struct check_run *run, const char *name, const struct dense_
     if (!check_ask(run, name, &q, out[0]))
         return false;
     const double after = run->candidate_seconds, between = children_seconds();
+    if (offline_waits(own)) {           /* no answer yet: nothing will be judged, and the reference need not be run */
+        memcpy(out[1], out[0], PATH_LENGTH);
+        return true;
+    }
+    reference.server = NULL;            /* the reference is always started here: the candidate is not asked in its stead */
+    reference.offline = NULL;
     reference.command = dense_reference();
     snprintf(label, sizeof label, "reference-%s", name);
     run->candidate = &reference;
