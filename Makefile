@@ -146,6 +146,9 @@ engine-cost: all ## a step of shear-lammps against one of shear, and on 2 ranks 
 second-opinion: ## LAMMPS's lubrication and noise styles, coefficient by coefficient (docs/lammps.md)
 	@python3 tools/lammps/coefficients.py
 
+findings: all ## what is wrong in stock LAMMPS: the smallest decks, and the gate's own words, beside docs/findings.md
+	@B=$B python3 tools/lammps/findings.py
+
 work-precision: all ## seconds for 1 % of the pairs near contact, by integrator and step (about 5 minutes; keeps finished rows)
 	@tools/work-precision.sh $B
 
@@ -155,5 +158,5 @@ help: ## this list
 clean: ## remove build/
 	rm -rf $B
 
-.PHONY: all setup validate test lines coverage sanitize memcheck scenes faults calibrate bench scaling engine engine-cost second-opinion work-precision help clean FORCE
+.PHONY: all setup validate test lines coverage sanitize memcheck scenes faults calibrate bench scaling engine engine-cost second-opinion findings work-precision help clean FORCE
 -include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS) $(ENGINE) tools/compare/checkpoints.c))
