@@ -175,6 +175,7 @@ engine-cost: all ## a step of shear-lammps against one of shear, and on 2 ranks 
 second-opinion: ## LAMMPS's lubrication and noise styles, coefficient by coefficient (docs/lammps.md)
 	@python3 tools/lammps/coefficients.py
 
+<<<<<<< HEAD
 ci-files: $B/shear ## run tools/ci/*.yml as GitHub and GitLab would, with a right and a wrong candidate
 	@tools/ci/check.sh $B
 
@@ -190,6 +191,10 @@ audit: ## golden vectors and closed forms of the gate, recomputed in quadruple p
 
 verdicts: ## docs/verdicts.md against the cases and the results of the last make validate
 	@python3 tools/docs/verdicts.py --run
+=======
+findings: all ## what is wrong in stock LAMMPS: the smallest decks, and the gate's own words, beside docs/findings.md
+	@B=$B python3 tools/lammps/findings.py
+>>>>>>> lammps
 
 work-precision: all ## seconds for 1 % of the pairs near contact, by integrator and step (about 5 minutes; keeps finished rows)
 	@tools/work-precision.sh $B
@@ -200,6 +205,11 @@ help: ## this list
 clean: ## remove build/
 	rm -rf $B
 
+<<<<<<< HEAD
 .PHONY: all setup validate test lines coverage sanitize memcheck adapters scenes faults calibrate bench scaling golden engine engine-cost second-opinion ci-files \
 	suite-manifest vectors audit verdicts work-precision help clean FORCE
 -include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS) $(ENGINE) $(GOLDEN) $(AUDIT) tools/compare/checkpoints.c))
+=======
+.PHONY: all setup validate test lines coverage sanitize memcheck scenes faults calibrate bench scaling engine engine-cost second-opinion findings work-precision help clean FORCE
+-include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS) $(ENGINE) tools/compare/checkpoints.c))
+>>>>>>> lammps
