@@ -140,6 +140,9 @@ sanitize: all ## unit tests and the gate's cases under address and undefined-beh
 memcheck: all ## valgrind on one run of everything at once
 	@tools/memcheck.sh
 
+adapters: all ## the worked examples of docs/adapter.md (Fortran, Python, a LAMMPS dump) and mistakes planted in them
+	@tools/adapters/adapters.sh $B
+
 scenes: all ## run every sample scene and draw its plot (at most 20 s each)
 	@tools/scenes.sh
 
@@ -197,6 +200,6 @@ help: ## this list
 clean: ## remove build/
 	rm -rf $B
 
-.PHONY: all setup validate test lines coverage sanitize memcheck scenes faults calibrate bench scaling golden engine engine-cost second-opinion ci-files \
+.PHONY: all setup validate test lines coverage sanitize memcheck adapters scenes faults calibrate bench scaling golden engine engine-cost second-opinion ci-files \
 	suite-manifest vectors audit verdicts work-precision help clean FORCE
 -include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS) $(ENGINE) $(GOLDEN) $(AUDIT) tools/compare/checkpoints.c))

@@ -14,6 +14,7 @@ struct run_plan {
     unsigned seed_offset;
     const char *keep;                   /* check.h */
     const struct known_list *known;     /* accepted failures; null: none */
+    const char *offline;                /* the folder of exported questions, or null: ask the candidate */
 };
 
 /* Fills done[k] for plan->gate_case[k]; calls `completed` as each ends. */
