@@ -33,6 +33,7 @@ static const char help[] =
     "  --needs PHYSICS       only cases that need this: contact, drag, lubrication, ...\n"
     "  --tier TIER           fast (default), standard, full; each includes the ones before it\n"
     "  --jobs N              worker processes (default 1)\n"
+    "  --stop-after N        end the run once N cases have failed\n"
     "  --seed-offset K       other seeds for everything random (default 0: those written in the cases)\n"
     "  --seeds N             calibrate: seed offsets 1 to N\n"
     "  --table FILE          calibrate: CSV with a row per seed\n"
@@ -46,7 +47,7 @@ struct options {
     const char *candidate, *layers, *cases, *needs, *report, *work, *table;
     char suite_dir[PATH_LENGTH];
     enum tier tier;
-    int jobs;
+    int jobs, stop_after;
     unsigned seed_offset, seeds;
     bool calibrating;
 };
@@ -117,6 +118,10 @@ static int parse_option(struct options *o, const char *name, const char *value)
         if (!whole_number(value, 1, 256, &n))
             return usage("--jobs '%s' is no whole number from 1 to 256", value);
         o->jobs = (int)n;
+    } else if (strcmp(name, "--stop-after") == 0) {
+        if (!whole_number(value, 1, 1000, &n))
+            return usage("--stop-after '%s' is no whole number from 1 to 1000", value);
+        o->stop_after = (int)n;
     } else if (strcmp(name, "--seed-offset") == 0) {
         if (!whole_number(value, 0, 2147483647, &n))
             return usage("--seed-offset '%s' is no whole number from 0 to 2147483647", value);
@@ -216,7 +221,7 @@ static int run_cases(const struct options *o, const struct suite_of_cases *suite
         return usage("%s", why);
     work = realpath(o->work, NULL); /* absolute: a candidate may change its folder */
     struct run_plan plan = { .gate_case = chosen, .count = count, .work = work, .jobs = o->jobs, .p_values = suite->p_values,
-                             .seed_offset = o->seed_offset };
+                             .seed_offset = o->seed_offset, .stop_after = o->stop_after };
     plan.candidate = (struct candidate){ .command = o->candidate, .bytes = (size_t)1 << 30 };
 
     struct provenance p = { .suite_version = GATE_VERSION, .candidate = o->candidate, .level = "A", .precision = "double",
@@ -240,7 +245,7 @@ static int run_cases(const struct options *o, const struct suite_of_cases *suite
     struct timespec start, end;
     clock_gettime(CLOCK_MONOTONIC, &start);
     terminal_open(&p);
-    run_all(&plan, done, terminal_case);
+    count = run_all(&plan, done, terminal_case);
     clock_gettime(CLOCK_MONOTONIC, &end);
     p.seconds = (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
 
