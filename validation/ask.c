@@ -26,6 +26,8 @@ static bool write_case(const struct check_run *run, const char *name, const stru
                              "scene", "scene.json", "needs", c->needs);
     if (q->draws)
         json_object_set_new(json, "draws", json_integer((json_int_t)q->draws));
+    if (q->pause)
+        json_object_set_new(json, "pause", json_integer(q->pause));
     bool good = true;
     if (q->states) {
         json_object_set_new(json, "states", json_string("states.csv"));

@@ -60,5 +60,6 @@ void noise_judge(struct subject *s, int stream, double stray);
 #define NOISE_SEEN 5.9
 double noise_declared(const struct subject *s, const char *key);       /* parameters.declared.<key> */
 void subject_free(struct subject *s);
+void check_uniform(struct check_run *run);
 
 #endif
