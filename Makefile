@@ -34,9 +34,10 @@ endif
 validate: all ## the fast tier against our own solver, and its report
 	$B/gate run --candidate "$B/shear --evaluate" --jobs $(JOBS) --work $B/cases --report $B/report
 
-test: ## build and run the unit tests
+test: ## build and run the unit tests, and run the CI files of tools/ci
 	@$(MAKE) $(PARALLEL) $(PROGRAMS) $B/unit-tests
 	$B/unit-tests
+	@tools/ci/check.sh $B
 
 # ---- programs ----
 
@@ -60,7 +61,7 @@ $B/obj/validation/statistics.o: CFLAGS += -O3
 
 $B/obj/tests/%.o: tests/%.c
 	@mkdir -p $(@D)
-	$(CC) $(BASE) $(CFLAGS) -Isolver -Ivalidation -Itests -Itools/engine -c $< -o $@
+	$(CC) $(BASE) $(CFLAGS) -Isolver -Ivalidation -Ivalidation/theory -Itests -Itools/engine -Itools/golden -c $< -o $@
 
 # LAMMPS as a library, and MPI; as system headers, for their warnings are not ours to mend.
 HOST_CFLAGS = $(patsubst -I%,-isystem %,$(shell pkg-config --cflags liblammps ompi-c))
@@ -77,16 +78,38 @@ $B/gate: $(call objects,$(GATE))
 	$(CC) $(CFLAGS) $^ -o $@ -ljansson -lgsl -lgslcblas -lm
 
 # The gate's own resistances inside LAMMPS's library: a second code where stock styles are wrong.
-$B/lammps-host: $B/obj/tools/lammps/host.o $B/obj/validation/theory/resistance.o
+$B/lammps-host: $B/obj/tools/lammps/host.o $B/obj/validation/theory/resistance.o $B/obj/validation/theory/repulsion.o
 	$(CC) $(CFLAGS) $^ -o $@ -llammps -lm
 
 $B/obj/tools/lammps/%.o: tools/lammps/%.c
 	@mkdir -p $(@D)
 	$(CC) $(BASE) $(CFLAGS) -DLAMMPS_SMALLBIG -Ivalidation/theory -c $< -o $@
 
-$B/lammps-candidate: tools/lammps/candidate.py
+# Golden vectors: the gate's closed forms, written down.
+GOLDEN  := $(wildcard tools/golden/*.c)
+$B/obj/tools/golden/%.o: tools/golden/%.c
+	@mkdir -p $(@D)
+	$(CC) $(BASE) $(CFLAGS) -Ivalidation/theory -c $< -o $@
+
+$B/vectors: $(call objects,$(GOLDEN) $(addprefix validation/theory/,contact.c contact_laws.c drag.c repulsion.c resistance.c))
+	$(CC) $(CFLAGS) $^ -o $@ -lm
+
+# The audit: everything of validation/theory again, in quadruple precision.
+AUDIT   := $(wildcard tools/audit/*.c)
+$B/obj/tools/audit/%.o: tools/audit/%.c
+	@mkdir -p $(@D)
+	$(CC) $(BASE) $(CFLAGS) -Ivalidation/theory -c $< -o $@
+
+$B/audit: $(call objects,$(AUDIT) $(wildcard validation/theory/*.c))
+	$(CC) $(CFLAGS) $^ -o $@ -ljansson -lgsl -lgslcblas -lquadmath -lm
+
+$B/lammps-candidate: tools/lammps/candidate.py $B/lammps_stock.py $B/lammps_reference.py
 	@mkdir -p $(@D)
 	install -m 755 $< $@
+
+$B/lammps_%.py: tools/lammps/lammps_%.py
+	@mkdir -p $(@D)
+	install -m 644 $< $@
 
 $B/obj/tools/compare/%.o: tools/compare/%.c
 	@mkdir -p $(@D)
@@ -98,7 +121,7 @@ $B/shear-lammps: $(call objects,$(ENGINE) $(filter-out solver/shear.c,$(SOLVER))
 $B/compare-checkpoints: $B/obj/tools/compare/checkpoints.o
 	$(CC) $(CFLAGS) $^ -o $@ -lm
 
-$B/unit-tests: $(call objects,$(TESTS) tools/engine/refuse.c $(filter-out solver/shear.c,$(SOLVER)) $(filter-out validation/gate.c,$(GATE)))
+$B/unit-tests: $(call objects,$(TESTS) tools/engine/refuse.c $(filter-out tools/golden/main.c,$(GOLDEN)) $(filter-out solver/shear.c,$(SOLVER)) $(filter-out validation/gate.c,$(GATE)))
 	$(CC) $(CFLAGS) $^ -o $@ -lcunit -ljansson -lgsl -lgslcblas -lm
 
 # ---- measuring: each prints its figure on its last line and fails when its bar is not met ----
@@ -136,6 +159,13 @@ bench: all ## particle-steps per second and instructions per particle-step, besi
 scaling: all ## time of a step against the number of spheres, 1e2 to 1e5 (exponent at most 1.08)
 	@tools/bench/scaling.sh $B
 
+VISCOSITIES := $(shell cd validation/cases/6-dense && echo viscosities-* | tr ' ' ',')
+golden: all ## sheared viscosities, code against code: hours of two cores, kept row by row in golden/viscosities; goes on where it stopped
+	$B/gate run --candidate "$B/shear --evaluate" --tier full --case $(VISCOSITIES) --jobs $(JOBS) --keep golden/viscosities --work $B/golden-cases --report $B/golden-report
+	@golden/viscosities/page.py golden/viscosities docs/viscosities.md
+	@cd golden/viscosities && gnuplot plot.gp
+	@echo "golden: $$(grep -c ',viscosity,' golden/viscosities/*-table.csv | awk -F: '{ n += $$2 } END { print n }') rows agree, see golden/viscosities and docs/viscosities.md"
+
 engine: all $B/unit-tests ## shear-lammps against shear, pathwise on 1, 2 and 4 ranks; restart; broken engines must be seen
 	@tools/engine/measure.sh $B
 
@@ -144,6 +174,19 @@ engine-cost: all ## a step of shear-lammps against one of shear, and on 2 ranks 
 
 second-opinion: ## LAMMPS's lubrication and noise styles, coefficient by coefficient (docs/lammps.md)
 	@python3 tools/lammps/coefficients.py
+
+ci-files: $B/shear ## run tools/ci/*.yml as GitHub and GitLab would, with a right and a wrong candidate
+	@tools/ci/check.sh $B
+
+suite-manifest: $B/gate ## freeze what the suite asks and how strictly (validation/suite-1.0.json); once, when it is released
+	$B/gate freeze
+
+vectors: all ## golden/vectors against what makes them (same bytes) and against our solver
+	@$(MAKE) $(PARALLEL) $B/vectors
+	@python3 tools/golden/check.py $B
+audit: ## golden vectors and closed forms of the gate, recomputed in quadruple precision by other derivations
+	@$(MAKE) $(PARALLEL) $B/audit
+	@$B/audit
 
 work-precision: all ## seconds for 1 % of the pairs near contact, by integrator and step (about 5 minutes; keeps finished rows)
 	@tools/work-precision.sh $B
@@ -154,5 +197,6 @@ help: ## this list
 clean: ## remove build/
 	rm -rf $B
 
-.PHONY: all setup validate test lines coverage sanitize memcheck scenes faults calibrate bench scaling engine engine-cost second-opinion work-precision help clean FORCE
--include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS) $(ENGINE) tools/compare/checkpoints.c))
+.PHONY: all setup validate test lines coverage sanitize memcheck scenes faults calibrate bench scaling golden engine engine-cost second-opinion ci-files \
+	suite-manifest vectors audit work-precision help clean FORCE
+-include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS) $(ENGINE) $(GOLDEN) $(AUDIT) tools/compare/checkpoints.c))

@@ -199,7 +199,7 @@ static void junit_is_valid_whatever_was_said(void)
     check_garbage(&run, "]]> <tag attribute=\"x\"> & \x01\x1b[31m control characters");
     done[0] = (struct finished_case){ .gate_case = &one, .results = run.results, .verdict = VERDICT_FAIL };
     done[1].verdict = VERDICT_SKIP;
-    struct provenance p = { .suite_version = "1", .candidate = "a & b", .level = "A", .precision = "double", .date = "2026-01-01" };
+    struct provenance p = { .gate_version = "1", .candidate = "a & b", .level = "A", .precision = "double", .date = "2026-01-01" };
     char path[PATH_LENGTH], why[WHY_LENGTH] = "", command[2 * PATH_LENGTH];
     path_join(path, folder, "junit.xml");
     check_true(report_junit(path, &p, done, 3, why), why);

@@ -28,7 +28,7 @@ static void write_header(FILE *file, const struct provenance *p, const struct fi
 {
     char name[WHY_LENGTH];
     fprintf(file, "# gate %s, suite %s, candidate %s (%s)\n# first p-value of every statistical result of the fast tier, by seed offset\n",
-            p->suite_version, p->suite_hash, p->candidate_hash, p->candidate);
+            p->gate_version, p->suite_hash, p->candidate_hash, p->candidate);
     fprintf(file, "offset,seconds,failed,inconclusive");
     for (size_t k = 0; k < count; k++)
         for (size_t r = 0; r < done[k].results.count; r++)

@@ -1,5 +1,6 @@
 /* Reading the cases of the suite. A wrong case is an error of the suite itself, so everything is checked, tersely. */
 #include "case.h"
+#include "versions.h"
 
 #include <ftw.h>
 #include <math.h>
@@ -52,7 +53,7 @@ bool case_lists(const json_t *words, const char *word)
 }
 
 static const char *const known_keys[] = { "about", "layer",      "check",     "tier",     "order",   "needs", "flags",
-                                          "scene", "parameters", "tolerance", "p_values", "seconds", "seed" };
+                                          "scene", "parameters", "tolerance", "p_values", "seconds", "seed",  "since", "terms" };
 
 static bool only_known_keys(const struct gate_case *c, char why[WHY_LENGTH])
 {
@@ -85,13 +86,34 @@ static bool parse_tolerance(struct gate_case *c, char why[WHY_LENGTH])
     return true;
 }
 
+/* {"X_A": ["X_A"], "third law": ["third law*"]}: at least one term, each with at least one pattern. */
+static bool parse_terms(struct gate_case *c, char why[WHY_LENGTH])
+{
+    const char *term;
+    json_t *patterns, *pattern;
+    size_t k;
+    c->terms = json_object_get(c->json, "terms");
+    if (!json_is_object(c->terms) || json_object_size(c->terms) == 0)
+        return why_not(why, "%s/case.json: 'terms' must say which physics terms the quantities judge", c->folder);
+    json_object_foreach(c->terms, term, patterns)
+    {
+        if (!json_is_array(patterns) || json_array_size(patterns) == 0)
+            return why_not(why, "%s/case.json: 'terms.%s' must be a list of patterns for quantities, [\"*\"] for all", c->folder, term);
+        json_array_foreach(patterns, k, pattern)
+            if (!json_is_string(pattern))
+                return why_not(why, "%s/case.json: 'terms.%s' must be a list of words", c->folder, term);
+    }
+    return true;
+}
+
 static bool parse_case(struct gate_case *c, char why[WHY_LENGTH])
 {
     const char *layer, *tier;
     if (!json_is_object(c->json))
         return why_not(why, "%s/case.json: is no JSON object", c->folder);
     if (!only_known_keys(c, why) || !required_text(c, "about", &c->about, why) || !required_text(c, "check", &c->check, why)
-        || !required_text(c, "layer", &layer, why) || !required_text(c, "tier", &tier, why) || !parse_tolerance(c, why))
+        || !required_text(c, "layer", &layer, why) || !required_text(c, "tier", &tier, why)
+        || !required_text(c, "since", &c->since, why) || !parse_tolerance(c, why))
         return false;
     if (!layer_parse(layer, &c->layer))
         return why_not(why, "%s/case.json: there is no layer '%s'", c->folder, layer);
@@ -103,6 +125,10 @@ static bool parse_case(struct gate_case *c, char why[WHY_LENGTH])
     c->parameters = json_object_get(c->json, "parameters");
     if (!json_is_array(c->needs) || !json_is_array(c->flags))
         return why_not(why, "%s/case.json: 'needs' and 'flags' must be lists of words", c->folder);
+    if (!suite_version_known(c->since))
+        return why_not(why, "%s/case.json: 'since' is '%s', no version of the suite like 1.0", c->folder, c->since);
+    if (!parse_terms(c, why))
+        return false;
     const json_t *seed = json_object_get(c->json, "seed");
     if (!json_is_integer(seed))
         return why_not(why, "%s/case.json: 'seed' must be a whole number", c->folder);
@@ -144,17 +170,6 @@ static int by_layer_order_name(const void *a, const void *b)
     return p->order != q->order ? (p->order > q->order) - (p->order < q->order) : strcmp(p->name, q->name);
 }
 
-static uint64_t hash_suite(const struct suite_of_cases *suite)
-{
-    uint64_t hash = HASH_START;
-    for (size_t k = 0; k < suite->count; k++) {
-        char path[PATH_LENGTH];
-        path_join(path, suite->item[k].folder, "case.json");
-        hash = file_hash(path, hash);
-    }
-    return hash;
-}
-
 bool cases_load(const char *folder, struct suite_of_cases *suite, char why[WHY_LENGTH])
 {
     *suite = (struct suite_of_cases){ 0 };
@@ -166,13 +181,10 @@ bool cases_load(const char *folder, struct suite_of_cases *suite, char why[WHY_L
     if (suite->count == 0)
         return why_not(why, "no case.json below %s", folder);
     qsort(suite->item, suite->count, sizeof *suite->item, by_layer_order_name);
-    for (size_t k = 0; k < suite->count; k++) {
-        suite->p_values += suite->item[k].p_values;
+    for (size_t k = 0; k < suite->count; k++)
         for (size_t other = 0; other < k; other++)
             if (strcmp(suite->item[other].name, suite->item[k].name) == 0)
                 return why_not(why, "two cases are called '%s'", suite->item[k].name);
-    }
-    suite->hash = hash_suite(suite);
     return true;
 }
 

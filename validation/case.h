@@ -16,10 +16,13 @@ struct gate_case {
     char folder[PATH_LENGTH];
     const char *about;          /* one sentence: what is asked */
     const char *check;          /* name of the check function */
+    const char *since;          /* version of the suite from which on it is binding */
+    bool advisory;              /* newer than the suite that is asked: shown, never red (versions.h) */
     enum layer layer;
     enum tier tier;
     int order;                  /* within its layer: cases that name a term come before those that only see it */
     json_t *needs, *flags;      /* arrays of words */
+    json_t *terms;              /* physics term -> list of patterns for the quantities that judge it (terms.json) */
     json_t *scene;              /* scene template; copy before changing: json_deep_copy */
     json_t *parameters;         /* anything the check wants */
     double tolerance;           /* with "reason"; NaN where the case has none */
@@ -29,7 +32,7 @@ struct gate_case {
     double seconds;             /* time limit of one start of the candidate; default 60 */
 };
 
-struct suite_of_cases { struct gate_case *item; size_t count; uint64_t hash; int p_values; };
+struct suite_of_cases { struct gate_case *item; size_t count; int p_values; /* of the binding cases */ };
 
 const char *layer_name(enum layer layer);
 bool layer_parse(const char *text, enum layer *layer);  /* "1" or "pair" */

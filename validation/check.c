@@ -8,6 +8,7 @@
  */
 #include "check.h"
 
+#include <fnmatch.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -145,11 +146,16 @@ void results_free(struct results *r)
     *r = (struct results){ 0 };
 }
 
+enum verdict result_counts(const struct result *r)
+{
+    return r->accepted ? VERDICT_SKIP : r->verdict;
+}
+
 /* What matters most: a failed invariant before a failed model, among equals the one furthest beyond its limit. */
 static double badness(const struct result *r)
 {
     const double excess = !isnan(r->p) ? -log10(r->p + 1e-300) / 6 : r->error / r->tolerance;
-    return 1e6 * (double)(int)r->verdict + (r->verdict == VERDICT_FAIL && r->judgement == INVARIANT ? 5e5 : 0)
+    return 1e6 * (double)(int)result_counts(r) + (result_counts(r) == VERDICT_FAIL && r->judgement == INVARIANT ? 5e5 : 0)
            + (isnan(excess) ? 4e5 : fmin(excess, 4e5));
 }
 
@@ -169,8 +175,8 @@ enum verdict results_verdict(const struct results *r)
     enum verdict worst = VERDICT_PASS;
     for (size_t k = 0; k < r->count; k++) {
         passed = passed || r->item[k].verdict == VERDICT_PASS;
-        if (r->item[k].verdict > worst)
-            worst = r->item[k].verdict;
+        if (result_counts(&r->item[k]) > worst)
+            worst = result_counts(&r->item[k]);
     }
     if (r->count == 0)
         return VERDICT_INCONCLUSIVE;
@@ -275,9 +281,29 @@ static bool settled_at_once(struct check_run *run)
     return failed;
 }
 
+/* A case that names a quantity for a term must have judged one: else the coverage matrix claims what nobody asked. */
+static void judge_terms(struct check_run *run)
+{
+    const char *term;
+    json_t *patterns;
+    json_object_foreach(run->gate_case->terms, term, patterns)
+        for (size_t p = 0; p < json_array_size(patterns); p++) {
+            const char *pattern = json_string_value(json_array_get(patterns, p));
+            size_t k = 0;
+            while (k < run->results.count && fnmatch(pattern, run->results.item[k].what, 0) != 0)
+                k++;
+            if (k == run->results.count)
+                check_error(run, INVARIANT, "terms of the case", NAN, NAN, NAN, NAN,
+                            "the case says that its quantity '%s' judges the term '%s', and it has judged no such quantity; this "
+                            "is a mistake in the suite", pattern, term);
+        }
+}
+
 void check_judge(struct check_run *run, const struct check *check, int p_values, unsigned seed_offset)
 {
     run_attempt(run, check, 1, seed_offset);
+    if (results_verdict(&run->results) == VERDICT_PASS) /* else it may not have come so far */
+        judge_terms(run);
     bool alarm = false;
     int given = 0;
     for (size_t k = 0; k < run->results.count; k++) {

@@ -41,6 +41,7 @@ struct result {
     char *sentence;                     /* names the wrong term in a full sentence; shown unless passed */
     char *picture;                      /* SVG file in the work folder, or null */
     char *notes;                        /* longer text for the report, or null */
+    const char *accepted;               /* known.json accepts this failure, and why; else null; borrowed (known.h) */
 };
 
 struct results { struct result *item; size_t count; };
@@ -54,6 +55,7 @@ struct check_run {
     int samples;                        /* multiply sample counts by this: 1 or 4 */
     struct results results;
     double candidate_seconds;           /* wall time spent in the candidate so far */
+    const char *keep;                   /* folder for what took long to compute, or null: checks that run for hours go on where they stopped */
 };
 
 struct check { const char *name; void (*run)(struct check_run *run); };
@@ -115,6 +117,7 @@ void result_notes(struct result *r, const char *format, ...) __attribute__((form
 
 /* Runs the check with the two-stage rule; the results are final afterwards. `p_values`: those of the whole suite. */
 void check_judge(struct check_run *run, const struct check *check, int p_values, unsigned seed_offset);
+enum verdict result_counts(const struct result *r); /* its verdict; an accepted failure counts as skipped */
 enum verdict results_verdict(const struct results *r);
 const struct result *results_worst(const struct results *r);
 const char *verdict_word(enum verdict v);           /* "pass", "skip", "inconclusive", "FAIL" */

@@ -4,6 +4,10 @@
  * This file is the command line: which cases, in which order, against which candidate, and what is written where.
  */
 #include "calibrate.h"
+#include "coverage.h"
+#include "github.h"
+#include "known.h"
+#include "versions.h"
 #include "terminal.h"
 
 #include <stdarg.h>
@@ -25,6 +29,7 @@ static const char help[] =
     "  gate calibrate --candidate COMMAND --seeds N --table FILE [options]\n"
     "                                           the cases with p-values under N seeds, for a candidate that is right:\n"
     "                                           false verdicts and the spread of p; goes on where FILE ends\n"
+    "  gate freeze                              write suite-" GATE_SUITE ".json: what this suite asks from now on, and how strictly\n"
     "\n"
     "  --candidate COMMAND   called as COMMAND CASE_DIR OUT_DIR (docs/formats.md)\n"
     "  --layer LAYER         only this layer, by number or name: 1 pair, 2 noise, 3 single, 4 two-bodies, 5 dilute,\n"
@@ -34,9 +39,13 @@ static const char help[] =
     "  --tier TIER           fast (default), standard, full; each includes the ones before it\n"
     "  --jobs N              worker processes (default 1)\n"
     "  --stop-after N        end the run once N cases have failed\n"
+    "  --suite VERSION       the suite as it was frozen, for example " GATE_SUITE ": newer cases only warn, and a case that has\n"
+    "                        changed since is an error (default: the cases as they are)\n"
+    "  --known FILE          failures that are accepted, with reason and expiry (docs/known.schema.json)\n"
     "  --seed-offset K       other seeds for everything random (default 0: those written in the cases)\n"
     "  --seeds N             calibrate: seed offsets 1 to N\n"
     "  --table FILE          calibrate: CSV with a row per seed\n"
+    "  --keep DIR            finished realisations of long tables are kept there as CSV and not computed again (make golden)\n"
     "  --report DIR          index.html and junit.xml (default build/report)\n"
     "  --work DIR            what candidates are given and answer (default build/cases)\n"
     "  --suite-dir DIR       the folder that holds cases/ and flags.json (default: validation/, found from the program)\n"
@@ -44,7 +53,7 @@ static const char help[] =
     "Exit codes: 0 pass, 1 fail, 2 wrong usage, 3 only inconclusive, 77 nothing supported.\n";
 
 struct options {
-    const char *candidate, *layers, *cases, *needs, *report, *work, *table;
+    const char *candidate, *layers, *cases, *needs, *report, *work, *table, *suite, *known, *keep;
     char suite_dir[PATH_LENGTH];
     enum tier tier;
     int jobs, stop_after;
@@ -106,10 +115,16 @@ static int parse_option(struct options *o, const char *name, const char *value)
         o->needs = value;
     else if (strcmp(name, "--report") == 0)
         o->report = value;
+    else if (strcmp(name, "--keep") == 0)
+        o->keep = value;
     else if (strcmp(name, "--table") == 0)
         o->table = value;
     else if (strcmp(name, "--work") == 0)
         o->work = value;
+    else if (strcmp(name, "--suite") == 0)
+        o->suite = value;
+    else if (strcmp(name, "--known") == 0)
+        o->known = value;
     else if (strcmp(name, "--suite-dir") == 0)
         snprintf(o->suite_dir, sizeof o->suite_dir, "%s", value);
     else if (strcmp(name, "--tier") == 0)
@@ -203,43 +218,73 @@ static int list_cases(const struct gate_case **chosen, size_t count)
     return 0;
 }
 
-static bool write_reports(const struct options *o, const struct provenance *p, const struct finished_case *done, size_t count,
-                          char why[WHY_LENGTH])
+/* Everything that is read after the run: files, GitHub's page, the last lines of the terminal. */
+static bool write_reports(const struct options *o, struct provenance *p, const struct suite_of_cases *suite,
+                          const struct finished_case *done, size_t count, char why[WHY_LENGTH])
 {
-    char junit[PATH_LENGTH], html[PATH_LENGTH], flags[PATH_LENGTH];
+    char junit[PATH_LENGTH], html[PATH_LENGTH], flags[PATH_LENGTH], terms[PATH_LENGTH];
+    struct coverage coverage;
     path_join(junit, o->report, "junit.xml");
     path_join(html, o->report, "index.html");
     path_join(flags, o->suite_dir, "flags.json");
-    return folder_make(o->report, why) && report_junit(junit, p, done, count, why)
-           && report_html(html, p, done, count, flags, why);
+    path_join(terms, o->suite_dir, "terms.json");
+    bool good = coverage_make(terms, suite, done, count, &coverage, why);
+    p->coverage = good ? &coverage : NULL;
+    good = good && folder_make(o->report, why) && report_junit(junit, p, done, count, why)
+           && report_html(html, p, done, count, flags, why) && github_report(p, done, count, o->known, why);
+    if (good)
+        printf("report: %s/index.html\n", o->report);
+    else
+        fprintf(stderr, "gate: %s\n", why);
+    terminal_close(p, done, count, report_tally(done, count));
+    p->coverage = NULL;
+    coverage_free(&coverage);
+    return good;
 }
 
-static int run_cases(const struct options *o, const struct suite_of_cases *suite, const struct gate_case **chosen, size_t count)
+/* What is known of the candidate, of its suite, and of the day: the first line. */
+static void fill_provenance(const struct options *o, const struct suite_choice *choice, struct provenance *p)
 {
-    char why[WHY_LENGTH], *work;
+    const time_t now = time(NULL);
+    *p = (struct provenance){ .gate_version = GATE_VERSION, .candidate = o->candidate, .level = "A", .precision = "double",
+                              .seed_offset = o->seed_offset };
+    snprintf(p->suite, sizeof p->suite, "%s%s", choice->version,
+             choice->pinned ? " as frozen, asked for" : choice->as_frozen ? " as frozen" : ", not as frozen");
+    snprintf(p->suite_hash, sizeof p->suite_hash, "%s", choice->hash);
+    strftime(p->date, sizeof p->date, "%Y-%m-%dT%H:%M:%SZ", gmtime(&now));
+}
+
+static int run_cases(const struct options *o, const struct suite_of_cases *suite, const struct suite_choice *choice,
+                     const struct gate_case **chosen, size_t count)
+{
+    char why[WHY_LENGTH], today[16], *work;
+    struct provenance p;
+    struct known_list known = { 0 };
+    fill_provenance(o, choice, &p);
+    snprintf(today, sizeof today, "%.10s", p.date);
+    if (o->known && !known_load(o->known, suite, today, &known, why)) {
+        known_free(&known);
+        return usage("%s", why);
+    }
     if (!folder_make(o->work, why))
         return usage("%s", why);
     work = realpath(o->work, NULL); /* absolute: a candidate may change its folder */
     struct run_plan plan = { .gate_case = chosen, .count = count, .work = work, .jobs = o->jobs, .p_values = suite->p_values,
-                             .seed_offset = o->seed_offset, .stop_after = o->stop_after };
+                             .seed_offset = o->seed_offset, .stop_after = o->stop_after, .keep = o->keep, .known = &known };
     plan.candidate = (struct candidate){ .command = o->candidate, .bytes = (size_t)1 << 30 };
-
-    struct provenance p = { .suite_version = GATE_VERSION, .candidate = o->candidate, .level = "A", .precision = "double",
-                            .seed_offset = o->seed_offset };
-    snprintf(p.suite_hash, sizeof p.suite_hash, "%016llx", (unsigned long long)suite->hash);
     if (!candidate_hash(&plan.candidate, p.candidate_hash)) {
         free(work);
+        known_free(&known);
         return usage("there is no program '%.*s' to run as the candidate", (int)strcspn(o->candidate, " \t"), o->candidate);
     }
     if (o->calibrating) {
         const bool good = calibrate_run(&plan, &p, o->seeds, o->table, why);
         free(work);
+        known_free(&known);
         const int code = good ? calibrate_summary(o->table, why) : EXIT_USAGE;
         return code == EXIT_USAGE ? usage("%s", why) : code;
     }
     say_not_tested(o, suite, count, p.not_tested, sizeof p.not_tested);
-    const time_t date = time(NULL);
-    strftime(p.date, sizeof p.date, "%Y-%m-%dT%H:%M:%SZ", gmtime(&date));
 
     struct finished_case *done = calloc(count, sizeof *done);
     struct timespec start, end;
@@ -249,18 +294,14 @@ static int run_cases(const struct options *o, const struct suite_of_cases *suite
     clock_gettime(CLOCK_MONOTONIC, &end);
     p.seconds = (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
 
-    const struct tally tally = report_tally(done, count);
-    const bool written = write_reports(o, &p, done, count, why);
-    if (written)
-        printf("report: %s/index.html\n", o->report);
-    else
-        fprintf(stderr, "gate: %s\n", why);
-    terminal_close(done, count, p.seconds, tally);
+    const bool written = write_reports(o, &p, suite, done, count, why);
+    const int code = written ? report_exit_code(report_tally(done, count)) : EXIT_USAGE;
     for (size_t k = 0; k < count; k++)
-        results_free(&done[k].results);
+        finished_free(&done[k]);
     free(done);
     free(work);
-    return written ? report_exit_code(tally) : EXIT_USAGE;
+    known_free(&known);
+    return code;
 }
 
 /* One flag of flags.json, or all their names. */
@@ -298,10 +339,20 @@ static int explain(const char *flag, const char *suite_dir)
 static int with_suite(const char *verb, const struct options *o)
 {
     struct suite_of_cases suite;
+    struct suite_choice choice;
     char why[WHY_LENGTH], folder[PATH_LENGTH];
     path_join(folder, o->suite_dir, "cases");
     if (!cases_load(folder, &suite, why))
         return usage("%s", why);
+    if (strcmp(verb, "freeze") == 0) {
+        const bool good = suite_freeze(&suite, o->suite_dir, why);
+        cases_free(&suite);
+        return good ? printf("suite " GATE_SUITE " frozen\n") < 0 : usage("%s", why);
+    }
+    if (!suite_choose(&suite, o->suite_dir, o->suite, &choice, why)) {
+        cases_free(&suite);
+        return usage("%s", why);
+    }
     int code = check_names(o, &suite);
     const struct gate_case **chosen = calloc(suite.count, sizeof *chosen);
     size_t count = 0;
@@ -315,7 +366,7 @@ static int with_suite(const char *verb, const struct options *o)
     if (code == 0 && count == 0)
         code = usage("no case is left after --layer, --case, --needs and --tier");
     if (code == 0)
-        code = strcmp(verb, "list") == 0 ? list_cases(chosen, count) : run_cases(o, &suite, chosen, count);
+        code = strcmp(verb, "list") == 0 ? list_cases(chosen, count) : run_cases(o, &suite, &choice, chosen, count);
     free(chosen);
     cases_free(&suite);
     return code;
@@ -327,10 +378,10 @@ int main(int argc, char **argv)
     if (strcmp(verb, "--help") == 0 || strcmp(verb, "-h") == 0)
         return fputs(help, stdout) < 0;
     if (strcmp(verb, "--version") == 0)
-        return printf("gate %s, suite 1.0\n", GATE_VERSION) < 0;
+        return printf("gate %s, suite %s\n", GATE_VERSION, GATE_SUITE) < 0;
     if (strcmp(verb, "run") != 0 && strcmp(verb, "list") != 0 && strcmp(verb, "calibrate") != 0
-        && strcmp(verb, "explain") != 0)
-        return usage("%s'%s'; see gate --help", *verb ? "unknown command " : "say `run`, `list`, `explain` or `calibrate`, not ", verb);
+        && strcmp(verb, "explain") != 0 && strcmp(verb, "freeze") != 0)
+        return usage("%s'%s'; see gate --help", *verb ? "unknown command " : "say `run`, `list`, `explain`, `calibrate` or `freeze`, not ", verb);
 
     struct options o = { .report = "build/report", .work = "build/cases", .jobs = 1,
                          .calibrating = strcmp(verb, "calibrate") == 0 };
@@ -344,7 +395,7 @@ int main(int argc, char **argv)
         if (code != 0)
             return code;
     }
-    if (strcmp(verb, "list") != 0 && !o.candidate)
+    if (strcmp(verb, "list") != 0 && strcmp(verb, "freeze") != 0 && !o.candidate)
         return usage("%s needs --candidate COMMAND", verb);
     if (o.calibrating && (!o.seeds || !o.table))
         return usage("calibrate needs --seeds N and --table FILE");

@@ -2,9 +2,9 @@
  * The page for people: one file, no network, no script. What is wrong stands first, in sentences; then each layer with
  * its numbers; each case opens to all of its results, its pictures, its tolerance with the reason, and its flags.
  */
+#include "coverage.h"
 #include "html_style.h"
 #include "markup.h"
-#include "report.h"
 #include "terminal.h"
 
 #include <math.h>
@@ -22,11 +22,19 @@ static const char *const layer_asks[] = {
     "Published curves and tables.",
 };
 
-static void badge(FILE *f, enum verdict v)
+static const char *const kind[] = { "pass", "skip", "unsure", "fail" };
+
+/* `word`: null for the plain word of the verdict. */
+static void badge(FILE *f, enum verdict v, const char *word)
 {
-    static const char *const kind[] = { "pass", "skip", "unsure", "fail" };
-    static const char *const word[] = { "pass", "skipped", "inconclusive", "FAIL" };
-    fprintf(f, "<span class=\"badge %s\">%s</span>", kind[v], word[v]);
+    static const char *const plain[] = { "pass", "skipped", "inconclusive", "FAIL" };
+    fprintf(f, "<span class=\"badge %s\">%s</span>", kind[v], word ? word : plain[v]);
+}
+
+static void case_badge(FILE *f, const struct finished_case *done)
+{
+    const bool plain = done->standing == COUNTS || (done->standing == ADVISORY && done->verdict <= VERDICT_SKIP);
+    badge(f, finished_counts(done), plain ? NULL : finished_word(done));
 }
 
 static void cell(FILE *f, double x)
@@ -53,8 +61,8 @@ static void limit_cell(FILE *f, const struct result *r)
 
 static void heading(FILE *f, const struct provenance *p, const struct finished_case *done, size_t count, struct tally t)
 {
-    const char *kind = t.failed > t.inconclusive ? "fail" : t.failed ? "unsure" : t.passed ? "pass" : "skip";
-    fprintf(f, "<header class=%s><p class=kicker>sheargate verdict</p><h1>", kind);
+    const char *colour = t.failed > t.inconclusive ? "fail" : t.failed ? "unsure" : t.passed ? "pass" : "skip";
+    fprintf(f, "<header class=%s><p class=kicker>sheargate verdict</p><h1>", colour);
     if (t.failed == 0 && t.passed > 0)
         fprintf(f, "All %d cases that could be asked passed", t.passed);
     else if (t.failed == 0)
@@ -63,16 +71,16 @@ static void heading(FILE *f, const struct provenance *p, const struct finished_c
         fprintf(f, "%d of %d cases %s", t.failed, t.failed + t.passed, t.failed > t.inconclusive ? "failed" : "are inconclusive");
     fputs("</h1><p class=command><code>", f);
     markup_text(f, p->candidate);
-    fprintf(f, "</code> \302\267 suite 1.0 (%s) \302\267 %s \302\267 %.1f s</p><p class=command>Not tested: ", p->suite_hash, p->date,
-            p->seconds);
+    fprintf(f, "</code> \302\267 suite %s (%s) \302\267 %s \302\267 %.1f s</p><p class=command>Not tested: ", p->suite, p->suite_hash,
+            p->date, p->seconds);
     markup_text(f, p->not_tested);
     fputs("</p></header>\n<div class=tiles>", f);
-    const struct { const char *kind, *word; int n; } tiles[] = { { "pass", "passed", t.passed },
+    const struct { const char *colour, *word; int n; } tiles[] = { { "pass", "passed", t.passed },
                                                                  { "fail", "failed", t.failed - t.inconclusive },
                                                                  { "unsure", "inconclusive", t.inconclusive },
                                                                  { "skip", "skipped", t.skipped } };
     for (size_t k = 0; k < sizeof tiles / sizeof *tiles; k++)
-        fprintf(f, "<div class=\"tile %s\"><b>%d</b>%s</div>", tiles[k].n ? tiles[k].kind : "none", tiles[k].n, tiles[k].word);
+        fprintf(f, "<div class=\"tile %s\"><b>%d</b>%s</div>", tiles[k].n ? tiles[k].colour : "none", tiles[k].n, tiles[k].word);
     size_t results = 0;
     for (size_t k = 0; k < count; k++)
         results += done[k].results.count;
@@ -84,15 +92,20 @@ static void wrong_in_case(FILE *f, const struct finished_case *done)
 {
     enum { SENTENCES_AT_MOST = 8 };
     int told = 0, all = 0;
-    fprintf(f, "<div class=\"wrong %s\"><p class=where>", done->verdict == VERDICT_FAIL ? "fail" : "unsure");
-    badge(f, done->verdict);
+    fprintf(f, "<div class=\"wrong %s\"><p class=where>", kind[finished_counts(done)]);
+    case_badge(f, done);
     fprintf(f, " %s / <a href=\"#%s\">%s</a></p><ul>\n", layer_name(done->gate_case->layer), done->gate_case->name,
             done->gate_case->name);
+    if (done->remark) {
+        fputs("<li>", f);
+        markup_text(f, done->remark);
+        fputs("</li>\n", f);
+    }
     for (int rank = 0; rank < 3; rank++)
         for (size_t i = 0; i < done->results.count; i++) {
             const struct result *r = &done->results.item[i];
             const int mine = r->verdict == VERDICT_INCONCLUSIVE ? 2 : r->judgement == MODEL ? 1 : 0;
-            if (r->verdict < VERDICT_INCONCLUSIVE || mine != rank || ++all > SENTENCES_AT_MOST)
+            if (result_counts(r) < VERDICT_INCONCLUSIVE || mine != rank || ++all > SENTENCES_AT_MOST)
                 continue;
             fputs("<li>", f);
             markup_text(f, r->sentence);
@@ -111,9 +124,31 @@ static void wrong_terms(FILE *f, const struct finished_case *done, size_t count,
     fputs("<section><h2>What is wrong</h2><p class=lead>The first case names the most: later ones build on it. In each, broken "
           "invariants stand first (they need no formula of ours), then disagreement with the declared model.</p>\n", f);
     for (size_t k = 0; k < count; k++)
-        if (done[k].verdict >= VERDICT_INCONCLUSIVE)
+        if (finished_counts(&done[k]) >= VERDICT_INCONCLUSIVE)
             wrong_in_case(f, &done[k]);
     fputs("</section>\n", f);
+}
+
+/* Failures that do not turn the run red: accepted ones with their reason, and those of cases newer than the suite asked. */
+static void tolerated(FILE *f, const struct finished_case *done, size_t count)
+{
+    bool first = true;
+    for (size_t k = 0; k < count; k++) {
+        const struct result *worst = results_worst(&done[k].results);
+        if (done[k].standing != KNOWN && !(done[k].standing == ADVISORY && done[k].verdict > VERDICT_SKIP))
+            continue;
+        if (first)
+            fputs("<section><h2>Wrong, but not counted</h2><p class=lead>Failures that known.json accepts, and warnings of cases newer than "
+                  "the suite asked.</p>\n", f);
+        first = false;
+        fputs("<div class=\"wrong skip\"><p class=where>", f);
+        case_badge(f, &done[k]);
+        fprintf(f, " %s / <a href=\"#%s\">%s</a></p><ul><li>", layer_name(done[k].gate_case->layer), done[k].gate_case->name,
+                done[k].gate_case->name);
+        markup_text(f, done[k].remark ? done[k].remark : worst && worst->sentence ? worst->sentence : "no result");
+        fputs("</li></ul></div>\n", f);
+    }
+    fputs(first ? "" : "</section>\n", f);
 }
 
 static void picture(FILE *f, const struct finished_case *done, const struct result *r)
@@ -141,7 +176,7 @@ static void result_row(FILE *f, const struct result *r)
     error_cell(f, r);
     limit_cell(f, r);
     fputs("<td>", f);
-    badge(f, r->verdict);
+    badge(f, result_counts(r), r->accepted ? "known" : NULL);
     fputs("</td></tr>\n", f);
     if (r->verdict == VERDICT_PASS && !r->notes)
         return;
@@ -180,7 +215,7 @@ static void one_case(FILE *f, const struct finished_case *done)
     const struct gate_case *c = done->gate_case;
     const struct result *worst = results_worst(&done->results);
     fprintf(f, "<details id=\"%s\"%s><summary><span class=name>%s</span><span class=asks>", c->name,
-            done->verdict >= VERDICT_INCONCLUSIVE ? " open" : "", c->name);
+            finished_counts(done) >= VERDICT_INCONCLUSIVE ? " open" : "", c->name);
     markup_text(f, c->about);
     fputs("</span><span class=nums>", f);
     if (worst && done->verdict != VERDICT_SKIP) {
@@ -189,7 +224,7 @@ static void one_case(FILE *f, const struct finished_case *done)
         fprintf(f, "%zu judged<br>worst %s%s", done->results.count, isnan(worst->p) ? "error " : "", error);
     }
     fputs("</span>", f);
-    badge(f, done->verdict);
+    case_badge(f, done);
     fputs("</summary><div class=body><dl>", f);
     if (c->reason) {
         fprintf(f, "<dt>tolerance</dt><dd>%g: ", c->tolerance);
@@ -218,7 +253,7 @@ static void layers(FILE *f, const struct finished_case *done, size_t count)
         for (size_t k = 0; k < count; k++)
             if ((int)done[k].gate_case->layer == layer) {
                 asked++;
-                passed += done[k].verdict == VERDICT_PASS;
+                passed += finished_counts(&done[k]) == VERDICT_PASS;
             }
         if (asked == 0)
             continue;
@@ -268,11 +303,11 @@ static void fact(FILE *f, const char *name, const char *value)
 
 static void provenance(FILE *f, const struct provenance *p)
 {
-    char text[64];
+    char text[160];
     fputs("<section><h2>Provenance</h2><dl>", f);
     fact(f, "date", p->date);
-    fact(f, "gate", p->suite_version);
-    snprintf(text, sizeof text, "1.0, cases %s", p->suite_hash);
+    fact(f, "gate", p->gate_version);
+    snprintf(text, sizeof text, "%s, cases %s", p->suite, p->suite_hash);
     fact(f, "suite", text);
     fact(f, "candidate", p->candidate);
     fact(f, "candidate hash", p->candidate_hash);
@@ -297,12 +332,15 @@ bool report_html(const char *path, const struct provenance *p, const struct fini
         return why_not(why, "cannot write %s", path);
     }
     fprintf(f, "<!DOCTYPE html>\n<html lang=en><head><meta charset=utf-8><meta name=viewport content=\"width=device-width\">"
-               "<title>sheargate verdict</title><style>\n%s</style></head><body><main>\n", html_style);
+               "<title>sheargate verdict</title><style>\n%s%s</style></head><body><main>\n", html_style, html_style_coverage);
     heading(f, p, done, count, report_tally(done, count));
     wrong_terms(f, done, count, report_tally(done, count));
+    tolerated(f, done, count);
     layers(f, done, count);
-    provenance(f, p);
     flags(f, done, count, explained);
+    provenance(f, p);
+    if (p->coverage)
+        coverage_html(f, p->coverage);
     fputs("</main></body></html>\n", f);
     json_decref(explained);
     return fclose(f) == 0 ? true : why_not(why, "cannot write %s: disk full?", path);

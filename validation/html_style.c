@@ -25,7 +25,7 @@ const char html_style[] =
     ".badge.pass{background:#e3f2ea;color:var(--pass)}.badge.fail{background:var(--fail)}"
     ".badge.unsure{background:var(--unsure)}.badge.skip{background:#e8eaed;color:var(--skip)}\n"
     ".wrong{background:var(--paper);border:1px solid var(--line);border-left:4px solid var(--fail);border-radius:4px;"
-    "padding:10px 16px;margin:0 0 10px}.wrong.unsure{border-left-color:var(--unsure)}\n"
+    "padding:10px 16px;margin:0 0 10px}.wrong.unsure{border-left-color:var(--unsure)}.wrong.skip{border-left-color:var(--skip)}\n"
     ".wrong .where{margin:0;color:var(--soft)}.wrong .where a{color:var(--ink);font-weight:600}.wrong ul{margin:6px 0 2px;"
     "padding-left:18px}.wrong li{margin:2px 0}\n"
     "details{background:var(--paper);border:1px solid var(--line);border-bottom-width:0}"
@@ -48,3 +48,11 @@ const char html_style[] =
     "figure{margin:0 0 14px}figure svg{max-width:100%;height:auto}figure svg:not([width]){width:964px}\n"
     "@media(max-width:760px){summary{grid-template-columns:1fr 92px}.asks,.nums{grid-column:1/3;text-align:left}}\n"
     "@media print{body{background:#fff}details{break-inside:avoid}}\n";
+
+/* In a string of its own, for compilers need not take more than 4095 characters. */
+const char html_style_coverage[] =
+    ".coverage .row{display:grid;grid-template-columns:230px repeat(7,minmax(0,1fr)) 150px;gap:6px;align-items:baseline;padding:4px 12px}"
+    ".coverage .head{color:var(--soft);font-size:13px;font-weight:600}.coverage .group{margin:12px 0 2px;font-weight:600}\n"
+    ".coverage .pass{color:var(--pass)}.coverage .fail{color:var(--fail);font-weight:700}.coverage .unsure{color:var(--unsure);"
+    "font-weight:700}.coverage .none,.coverage .missing{color:var(--soft);font-size:12.5px}.coverage .body ul{margin:0;"
+    "padding-left:18px;columns:2}.coverage .body p{margin:0 0 6px}\n";

@@ -2,6 +2,6 @@
 #ifndef HTML_STYLE_H
 #define HTML_STYLE_H
 
-extern const char html_style[];
+extern const char html_style[], html_style_coverage[];
 
 #endif

@@ -5,16 +5,49 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+enum verdict finished_counts(const struct finished_case *done)
+{
+    switch (done->standing) {
+    case KNOWN: return VERDICT_SKIP;
+    case HEALED:
+    case EXPIRED: return VERDICT_FAIL;
+    case ADVISORY: return done->verdict > VERDICT_SKIP ? VERDICT_SKIP : done->verdict;
+    case COUNTS: break;
+    }
+    return done->verdict;
+}
+
+const char *finished_word(const struct finished_case *done)
+{
+    switch (done->standing) {
+    case KNOWN: return "known";
+    case HEALED: return "HEALED";
+    case EXPIRED: return "EXPIRED";
+    case ADVISORY: return done->verdict > VERDICT_SKIP ? "warns" : verdict_word(done->verdict);
+    case COUNTS: break;
+    }
+    return verdict_word(done->verdict);
+}
+
+void finished_free(struct finished_case *done)
+{
+    results_free(&done->results);
+    free(done->remark);
+    done->remark = NULL;
+}
 
 struct tally report_tally(const struct finished_case *done, size_t count)
 {
     struct tally t = { 0 };
     for (size_t k = 0; k < count; k++) {
-        t.passed += done[k].verdict == VERDICT_PASS;
-        t.skipped += done[k].verdict == VERDICT_SKIP;
-        t.inconclusive += done[k].verdict == VERDICT_INCONCLUSIVE;
-        t.failed += done[k].verdict == VERDICT_FAIL || done[k].verdict == VERDICT_INCONCLUSIVE;
+        const enum verdict v = finished_counts(&done[k]);
+        t.passed += v == VERDICT_PASS;
+        t.skipped += v == VERDICT_SKIP;
+        t.inconclusive += v == VERDICT_INCONCLUSIVE;
+        t.failed += v == VERDICT_FAIL || v == VERDICT_INCONCLUSIVE;
     }
     return t;
 }
@@ -38,7 +71,7 @@ static void property(FILE *file, const char *name, const char *value)
 /* A result as one line of text: what, numbers, sentence. */
 static void result_line(FILE *file, const struct result *r)
 {
-    fprintf(file, "%s: ", verdict_word(r->verdict));
+    fprintf(file, "%s: ", r->accepted ? "known" : verdict_word(r->verdict));
     markup_text(file, r->what);
     fprintf(file, ": measured %.17g, expected %.17g, ", r->measured, r->expected);
     if (isnan(r->p))
@@ -52,20 +85,34 @@ static void result_line(FILE *file, const struct result *r)
     fputc('\n', file);
 }
 
-static void testcase(FILE *file, const struct finished_case *done)
+/* "healed: <what known.json has to do with it>: <the worst sentence>" */
+static void message(FILE *file, const struct finished_case *done)
 {
     const struct result *worst = results_worst(&done->results);
+    if (done->standing != COUNTS) {
+        markup_text(file, done->standing == ADVISORY ? "newer than the suite asked, a warning" : finished_word(done));
+        fputs(": ", file);
+    }
+    if (done->remark) {
+        markup_text(file, done->remark);
+        fputs(": ", file);
+    }
+    markup_text(file, worst && worst->sentence ? worst->sentence : "no result");
+}
+
+static void testcase(FILE *file, const struct finished_case *done)
+{
+    const enum verdict v = finished_counts(done);
     fprintf(file, "  <testcase classname=\"gate.%s\" name=\"", layer_name(done->gate_case->layer));
     markup_text(file, done->gate_case->name);
     fprintf(file, "\" time=\"%.3f\">\n", done->seconds);
-    const char *sentence = worst && worst->sentence ? worst->sentence : "no result";
-    if (done->verdict == VERDICT_SKIP) {
+    if (v == VERDICT_SKIP) {
         fputs("    <skipped message=\"", file);
-        markup_text(file, sentence);
+        message(file, done);
         fputs("\"/>\n", file);
-    } else if (done->verdict != VERDICT_PASS) {
-        fprintf(file, "    <failure type=\"%s\" message=\"", done->verdict == VERDICT_FAIL ? "fail" : "inconclusive");
-        markup_text(file, sentence);
+    } else if (v != VERDICT_PASS) {
+        fprintf(file, "    <failure type=\"%s\" message=\"", v == VERDICT_FAIL ? "fail" : "inconclusive");
+        message(file, done);
         fputs("\">", file);
         for (size_t k = 0; k < done->results.count; k++)
             if (done->results.item[k].verdict != VERDICT_PASS)
@@ -88,8 +135,9 @@ bool report_junit(const char *path, const struct provenance *p, const struct fin
     fprintf(file, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n<testsuite name=\"gate\" tests=\"%zu\" failures=\"%d\" "
                   "errors=\"0\" skipped=\"%d\" time=\"%.3f\" timestamp=\"%s\">\n  <properties>\n",
             count, t.failed, t.skipped, p->seconds, p->date);
-    property(file, "gate", p->suite_version);
-    property(file, "suite", p->suite_hash);
+    property(file, "gate", p->gate_version);
+    property(file, "suite", p->suite);
+    property(file, "suite-hash", p->suite_hash);
     property(file, "candidate", p->candidate);
     property(file, "candidate-hash", p->candidate_hash);
     property(file, "level", p->level);

@@ -35,7 +35,7 @@ static int work_on(const struct run_plan *plan, const struct gate_case *c, const
     candidate_stop_with_us();
     struct candidate candidate = plan->candidate;
     candidate.seconds = c->seconds;
-    struct check_run run = { .gate_case = c, .candidate = &candidate };
+    struct check_run run = { .gate_case = c, .candidate = &candidate, .keep = plan->keep };
     snprintf(run.work, sizeof run.work, "%s", work);
     check_judge(&run, check_find(c->check), plan->p_values, plan->seed_offset);
     char path[PATH_LENGTH];
@@ -143,6 +143,7 @@ size_t run_all(const struct run_plan *plan, struct finished_case *done, void (*c
                 struct finished_case *d = &done[workers[w].at];
                 workers[w].pid = 0;
                 collect(d, status);
+                known_settle(plan->known, d);
                 d->seconds = now() - workers[w].start;
                 if (terminal)
                     printf("\r\033[K");

@@ -2,7 +2,7 @@
 #ifndef RUN_H
 #define RUN_H
 
-#include "report.h"
+#include "known.h"
 
 struct run_plan {
     const struct gate_case **gate_case; /* in the order in which they start */
@@ -13,6 +13,8 @@ struct run_plan {
     int p_values;                       /* of the whole suite */
     unsigned seed_offset;
     int stop_after;                     /* the run ends once so many cases are red; 0: it goes through all */
+    const char *keep;                   /* check.h */
+    const struct known_list *known;     /* accepted failures; null: none */
 };
 
 /* Fills done[] in the order of the plan, calls `completed` as each case ends, and returns how many ended. */

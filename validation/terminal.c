@@ -1,6 +1,8 @@
 /* Lines for people and logs. The columns are fixed so that a log can be read, and cut, by eye. */
 #include "terminal.h"
 
+#include "coverage.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -40,7 +42,7 @@ void terminal_error(char *text, size_t room, const struct result *r)
 
 void terminal_open(const struct provenance *p)
 {
-    printf("gate %s, suite 1.0 (%s), candidate '%s' (%s), entry level %s, %s precision; not tested: %s\n", p->suite_version,
+    printf("gate %s, suite %s (%s), candidate '%s' (%s), entry level %s, %s precision; not tested: %s\n", p->gate_version, p->suite,
            p->suite_hash, p->candidate, p->candidate_hash, p->level, p->precision, p->not_tested);
     printf("%-10s %-28s %-34s %13s %13s %9s  %-12s %s\n", "layer", "case", "worst of", "measured", "expected", "error",
            "verdict", "seconds");
@@ -50,17 +52,17 @@ void terminal_open(const struct provenance *p)
 static int worse_first(const void *a, const void *b)
 {
     const struct result *p = *(const struct result *const *)a, *q = *(const struct result *const *)b;
-    if (p->verdict != q->verdict)
-        return (int)q->verdict - (int)p->verdict;
+    if (result_counts(p) != result_counts(q))
+        return (int)result_counts(q) - (int)result_counts(p);
     return p->judgement != q->judgement ? (int)p->judgement - (int)q->judgement : (p > q) - (p < q);
 }
 
 /* Wrapped at 116 columns, indented under the case's line. */
-static void print_sentence(const struct result *r)
+static void print_wrapped(enum verdict shade, const char *label, const char *sentence)
 {
-    printf("           %s%s%s: ", colour(r->verdict), r->verdict == VERDICT_FAIL ? "fails" : verdict_word(r->verdict), plain());
+    printf("           %s%s%s: ", colour(shade), label, plain());
     int column = 24;
-    for (const char *word = r->sentence ? r->sentence : ""; *word;) {
+    for (const char *word = sentence ? sentence : ""; *word;) {
         const int n = (int)strcspn(word, " \n");
         if (column + n > 116) {
             printf("\n               ");
@@ -72,6 +74,11 @@ static void print_sentence(const struct result *r)
         word += strspn(word, " \n");
     }
     putchar('\n');
+}
+
+static void print_sentence(const struct result *r)
+{
+    print_wrapped(result_counts(r), r->accepted ? "known" : r->verdict == VERDICT_FAIL ? "fails" : verdict_word(r->verdict), r->sentence);
 }
 
 static void print_sentences(const struct results *r)
@@ -99,17 +106,20 @@ void terminal_case(const struct finished_case *done)
         terminal_error(error, sizeof error, worst);
     }
     printf("%-10s %-28s %-34.34s %13s %13s %9s  %s%-12s%s %.1f\n", layer_name(done->gate_case->layer), done->gate_case->name,
-           worst ? worst->what : "no result", measured, expected, error, colour(done->verdict), verdict_word(done->verdict),
+           worst ? worst->what : "no result", measured, expected, error, colour(finished_counts(done)), finished_word(done),
            plain(), done->seconds);
+    if (done->remark)
+        print_wrapped(finished_counts(done), finished_word(done), done->remark);
     print_sentences(&done->results);
     fflush(stdout);
 }
 
-static void name_those(const char *head, enum verdict v, const struct finished_case *done, size_t count)
+/* Names the cases that are called this way ("FAIL", "known", "warns"). */
+static void name_those(const char *head, const char *word, const struct finished_case *done, size_t count)
 {
     bool first = true;
     for (size_t k = 0; k < count; k++)
-        if (done[k].verdict == v) {
+        if (strcmp(finished_word(&done[k]), word) == 0) {
             printf("%s %s", first ? head : ",", done[k].gate_case->name);
             first = false;
         }
@@ -117,14 +127,20 @@ static void name_those(const char *head, enum verdict v, const struct finished_c
         putchar('\n');
 }
 
-void terminal_close(const struct finished_case *done, size_t count, double seconds, struct tally t)
+void terminal_close(const struct provenance *p, const struct finished_case *done, size_t count, struct tally t)
 {
     double candidate = 0;
     for (size_t k = 0; k < count; k++)
         candidate += done[k].candidate_seconds;
-    name_those("failed:", VERDICT_FAIL, done, count);
-    name_those("inconclusive (counted as failed):", VERDICT_INCONCLUSIVE, done, count);
-    name_those("skipped, the candidate does not have this physics:", VERDICT_SKIP, done, count);
-    printf("%.1f s, of which %.1f s of candidate runs\n", seconds, candidate);
+    if (p->coverage)
+        coverage_print(p->coverage);
+    name_those("failed:", "FAIL", done, count);
+    name_those("healed, to be taken out of known.json (counted as failed):", "HEALED", done, count);
+    name_those("expired in known.json (counted as failed):", "EXPIRED", done, count);
+    name_those("inconclusive (counted as failed):", "inconclusive", done, count);
+    name_those("known failures (counted as skipped):", "known", done, count);
+    name_those("fail, but are newer than the suite asked (warnings, counted as skipped):", "warns", done, count);
+    name_those("skipped, the candidate does not have this physics:", "skip", done, count);
+    printf("%.1f s, of which %.1f s of candidate runs\n", p->seconds, candidate);
     printf("%d passed, %d failed, %d skipped\n", t.passed, t.failed, t.skipped);
 }

@@ -6,7 +6,8 @@
 
 void terminal_open(const struct provenance *p);                 /* the first line, and the heads of the columns */
 void terminal_case(const struct finished_case *done);           /* one line, and what is wrong in full sentences */
-void terminal_close(const struct finished_case *done, size_t count, double seconds, struct tally t); /* ends with the counts */
+/* Terms, names by verdict, time; ends with the counts. */
+void terminal_close(const struct provenance *p, const struct finished_case *done, size_t count, struct tally t);
 
 /* The numbers of a result as short text: at most `room` characters; "-" where there is none. */
 void terminal_number(char *text, size_t room, double x);

@@ -1,18 +1,8 @@
 /*
- * Layer 6, sheared viscosities: the candidate against stock LAMMPS on the same scene.
- *
- * Both codes start from the same random spheres, made by the gate, and shear them; the first strain is thrown away and the rest
- * averaged. A quantity is compared by the differences d_k = candidate - reference of the realisations k: starting alike, the two
- * share some of their statistical fluctuation, so that the mean of d_k is sharper than either mean. How much depends on the codes:
- * a difference grows about e-fold in a strain here, so two codes that take the same steps stay together particle by particle to the
- * end, and two that take other steps part on the way. Either way the spread of d_k says honestly what is known.
- *
- * "Agrees" is an equivalence test: the interval mean(d) +- 4 standard errors (99.7 % for 10 realisations, Student's t with 9 degrees
- * of freedom) must lie within 5 % of the reference. Two small quantities cannot be known so well in a minute and have wider margins in
- * the case: the kinetic part, and the normal stress differences, which are compared in units of the shear stress.
+ * Layer 6: two codes run one scene from one start, the candidate and a reference; and what they left is read.
  */
 #include "dense.h"
-#include "flow.h"
+#include "sheared_point.h"
 #include "../packing.h"
 
 #include <math.h>
@@ -20,16 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const quantity_name[FLOW_QUANTITIES] = {
-    [VISCOSITY] = "relative viscosity", [CONTACT] = "contact viscosity", [KINETIC] = "kinetic viscosity", [PRESSURE] = "pressure",
-    [N1] = "N1", [N2] = "N2", [DRAG] = "drag viscosity"
-};
-static const int compared[] = { VISCOSITY, CONTACT, KINETIC, PRESSURE, N1, N2 };
-enum { COMPARED = sizeof compared / sizeof *compared };
-
-bool dense_start_in(struct check_run *run, const json_t *scene, unsigned seed, struct dense_start *s)
+bool dense_start_in(struct check_run *run, const json_t *scene, const json_t *par, unsigned seed, struct dense_start *s)
 {
-    const json_t *par = run->gate_case->parameters;
     json_t *shear = json_array_get(json_object_get(scene, "shear"), 0);
     const json_t *species = json_object_get(scene, "species"), *counts = json_object_get(par, "counts");
     struct packing_species mix[8];
@@ -57,7 +39,7 @@ bool dense_start_in(struct check_run *run, const json_t *scene, unsigned seed, s
 
 bool dense_start(struct check_run *run, unsigned seed, struct dense_start *s)
 {
-    return dense_start_in(run, run->gate_case->scene, seed, s);
+    return dense_start_in(run, run->gate_case->scene, run->gate_case->parameters, seed, s);
 }
 
 void dense_start_free(struct dense_start *s)
@@ -66,21 +48,30 @@ void dense_start_free(struct dense_start *s)
     json_decref(s->scene);
 }
 
-bool dense_ask_both(struct check_run *run, const char *name, const struct dense_start *s, char out[2][PATH_LENGTH])
+const char *dense_reference(void)
+{
+    return getenv("GATE_REFERENCE") ? getenv("GATE_REFERENCE") : "build/lammps-candidate --own reference";
+}
+
+bool dense_ask_both(struct check_run *run, const char *name, const struct dense_start *s, char out[2][PATH_LENGTH], double core_seconds[2])
 {
     const struct candidate *own = run->candidate;
     struct candidate reference = *own;
     const struct question q = { .protocol = "run", .scene = s->scene, .state = s->row, .states = s->count };
-    const double seconds = run->candidate_seconds;
+    const double seconds = run->candidate_seconds, before = children_seconds();
     char label[64];
     if (!check_ask(run, name, &q, out[0]))
         return false;
-    const double after = run->candidate_seconds;
-    reference.command = getenv("GATE_REFERENCE") ? getenv("GATE_REFERENCE") : "build/lammps-candidate --own reference";
+    const double after = run->candidate_seconds, between = children_seconds();
+    reference.command = dense_reference();
     snprintf(label, sizeof label, "reference-%s", name);
     run->candidate = &reference;
     const bool good = check_ask(run, label, &q, out[1]);
     run->candidate = own;
+    if (core_seconds) {
+        core_seconds[0] = between - before;
+        core_seconds[1] = children_seconds() - between;
+    }
     run->candidate_seconds = after > seconds ? after : seconds;
     if (!good && run->results.count) {  /* a missing reference is an error of the set-up, never a skip */
         struct result *r = &run->results.item[run->results.count - 1];
@@ -94,125 +85,61 @@ bool dense_ask_both(struct check_run *run, const char *name, const struct dense_
     return good;
 }
 
-/* Mean over realisations and its standard error of plus[k] - minus[k] (`minus` may be null); offset: of the number in a flow_average. */
-static double mean_at(const struct flow_average *plus, const struct flow_average *minus, size_t offset, int count, double *standard_error)
+double dense_radius(const struct dense_start *s, size_t i)
 {
-    double value[count];
-    for (int k = 0; k < count; k++)
-        value[k] = ((const double *)&plus[2 * k])[offset] - (minus ? ((const double *)&minus[2 * k])[offset] : 0);
-    return mean_of(value, count, standard_error);
+    return scene_number(json_array_get(json_object_get(s->scene, "species"), (size_t)s->row[i].species - 1), "radius", 1);
 }
 
-/* Contact viscosity against strain, both codes, and the steady averages, with error bars from the realisations. */
-static void draw(struct check_run *run, struct result *r, const struct flow_average *a, int count, double discard, double strain)
+/* Positions are unwrapped: the image n cells up along y is displaced by n edges times the strain along x as well. */
+void dense_pair(const struct dense_start *s, const struct dense_snapshot *now, size_t i, size_t j, double d[3])
 {
-    char path[PATH_LENGTH], command[PATH_LENGTH + 64];
-    double error[2], value[2];
-    path_join(path, run->work, "dense.gnuplot");
-    FILE *f = fopen(path, "w");
-    if (!f)
-        return;
-    fprintf(f, "set terminal svg size 960,400 enhanced font 'sans,12'\nset output 'dense.svg'\nset multiplot layout 1,2\n"
-               "$bins << end\n");
-    for (int b = 0; b < FLOW_BINS; b++) {
-        for (int code = 0; code < 2; code++)
-            value[code] = mean_at(a + code, NULL, FLOW_QUANTITIES + (size_t)b, count, &error[code]);
-        fprintf(f, "%g %g %g %g %g\n", (b + 0.5) * strain / FLOW_BINS, value[0], error[0], value[1], error[1]);
-    }
-    fprintf(f, "end\n$steady << end\n");
-    for (int c = 0; c < COMPARED; c++) {
-        for (int code = 0; code < 2; code++)
-            value[code] = mean_at(a + code, NULL, (size_t)compared[c], count, &error[code]);
-        fprintf(f, "%d \"%s\" %g %g %g %g\n", c, quantity_name[compared[c]], value[0], error[0], value[1], error[1]);
-    }
-    fprintf(f, "end\nset xlabel 'strain'\nset ylabel 'contact viscosity / fluid viscosity'\nset yrange [0:*]\nset key bottom left\n"
-               "set arrow from %g, graph 0 to %g, graph 1 nohead dashtype 2 lc 'gray'\n"
-               "plot $bins using 1:2:3 with yerrorlines pt 7 ps 0.6 lc 'black' title 'candidate', \\\n"
-               "     $bins using ($1+%g):4:5 with yerrorlines pt 6 ps 0.9 lc 'red' title 'LAMMPS (shifted sideways)'\n"
-               "unset arrow\nunset xlabel\nset ylabel 'steady average / (fluid viscosity x rate)'\n"
-               "set yrange [*:*]\nset xrange [-0.5:%d.5]\n"
-               "set xtics rotate by -25\nset key top right\nset xzeroaxis\n"
-               "plot $steady using 1:3:4:xtic(2) with yerrorbars pt 7 ps 0.6 lc 'black' title 'candidate', \\\n"
-               "     $steady using ($1+0.15):5:6 with yerrorbars pt 6 ps 0.9 lc 'red' title 'LAMMPS'\n",
-            discard, discard, strain / FLOW_BINS / 5, COMPARED - 1);
-    fclose(f);
-    snprintf(command, sizeof command, "cd '%s' && gnuplot dense.gnuplot 2>gnuplot.log", run->work);
-    if (system(command) == 0)
-        result_picture(r, "dense.svg");
+    const double edge = s->edge;
+    for (size_t k = 0; k < 3; k++)
+        d[k] = now->x[3 * j + k] - now->x[3 * i + k];
+    d[2] -= edge * nearbyint(d[2] / edge);
+    const double up = edge * nearbyint(d[1] / edge);
+    d[1] -= up;
+    d[0] -= up * s->rate * now->time;
+    d[0] -= edge * nearbyint(d[0] / edge);
 }
 
-/*
- * How far a mean may be from the reference's. Parts and pressure are held to a share of the shear stress, for that is what
- * they are parts of: a code that takes other steps, and so shares no scatter with the reference, can then be judged from these realisations.
- */
-static double margin_of(const struct check_run *run, int quantity, double reference, double shear_stress)
+bool dense_snapshots(struct check_run *run, const char *out, const struct dense_start *s, double discard,
+                     void (*see)(void *to, const struct dense_start *s, const struct dense_snapshot *now), void *to)
 {
-    const json_t *par = run->gate_case->parameters;
-    if (quantity == N1 || quantity == N2 || quantity == PRESSURE)
-        return scene_number(par, "normal_stress_margin", 0.1) * shear_stress;
-    if (quantity == KINETIC)
-        return scene_number(par, "kinetic_margin", 0.2) * fabs(reference);
-    return run->gate_case->tolerance * shear_stress;
-}
-
-static void judge(struct check_run *run, const struct dense_start *s, const struct flow_average *a, int count)
-{
-    double error, own_error, reference_error;
-    const double shear_stress = fabs(mean_at(a + 1, NULL, VISCOSITY, count, &error));
-    for (int c = 0; c < COMPARED; c++) {
-        const int q = compared[c];
-        const double difference = mean_at(a, a + 1, (size_t)q, count, &error);
-        const double reference = mean_at(a + 1, NULL, (size_t)q, count, &reference_error);
-        const double own = mean_at(a, NULL, (size_t)q, count, &own_error), margin = margin_of(run, q, reference, shear_stress);
-        struct result *r = check_interval(run, MODEL, quantity_name[q], own, error, reference, margin,
-                                          "%s is %.4g +- %.2g in the candidate and %.4g +- %.2g in LAMMPS, from the same %d starts; "
-                                          "paired difference %.2g +- %.2g, margin %.2g",
-                                          quantity_name[q], own, own_error, reference, reference_error, count, difference, error, margin);
-        result_notes(r, "candidate %.5g +- %.2g, LAMMPS %.5g +- %.2g (one standard error from %d realisations); paired difference "
-                     "%.2g +- %.2g, margin %.2g. In units of viscosity x rate.",
-                     own, own_error, reference, reference_error, count, difference, error, margin);
-    }
-    const double drag = mean_at(a, NULL, DRAG, count, &error), expected = 2.5 * s->phi;
-    check_error(run, MODEL, quantity_name[DRAG], drag, expected, fabs(drag / expected - 1), 1e-9,
-                "the one-body stresslets add %.9g to the relative viscosity; Einstein's (5/2) phi is %.9g", drag, expected);
-}
-
-void dense_equivalence(struct check_run *run)
-{
-    const json_t *par = run->gate_case->parameters;
-    const int count = (int)scene_number(par, "realisations", 8) * run->samples;
-    const double discard = scene_number(par, "discard", 2), strain = scene_number(par, "strain", 12);
-    struct flow_average *a = calloc(2 * (size_t)count, sizeof *a);   /* candidate and reference in turn */
-    struct dense_start s = { 0 };
-    bool good = a != NULL;
-    for (int k = 0; good && k < count; k++) {
-        char name[32], out[2][PATH_LENGTH];
-        check_progress(run, "realisation %d of %d", k + 1, count);
-        dense_start_free(&s);
-        if (!dense_start(run, run->seed * 1000 + (unsigned)k, &s)) {
-            s = (struct dense_start){ 0 };
-            good = false;
-            break;
+    char path[PATH_LENGTH], why[WHY_LENGTH];
+    struct table t;
+    double *frame[3] = { calloc(3 * s->count, sizeof **frame), calloc(3 * s->count, sizeof **frame), calloc(3 * s->count, sizeof **frame) };
+    path_join(path, out, "trajectory.csv");
+    const bool memory = frame[0] && frame[1] && frame[2], read = memory && table_read(path, "step,time,id,x,y,z,ux,uy,uz,wx,wy,wz", &t, why);
+    size_t in_frame = 0, frames = 0;
+    for (size_t r = 0; read && r < t.rows; r++) {
+        const double id = table_at(&t, r, 2), time = table_at(&t, r, 1);
+        if (id < 1 || id > (double)s->count)
+            continue;
+        for (size_t k = 0; k < 9; k++)
+            frame[k / 3][3 * ((size_t)id - 1) + k % 3] = table_at(&t, r, 3 + k);
+        in_frame++;
+        if (r + 1 < t.rows && table_at(&t, r + 1, 0) == table_at(&t, r, 0))
+            continue;
+        if (in_frame == s->count && time * fabs(s->rate) > discard) {
+            see(to, s, &(struct dense_snapshot){ time, frame[0], frame[1], frame[2] });
+            frames++;
         }
-        scene_set(s.scene, "run", json_pack("{sf}", "strain", strain));
-        scene_set(s.scene, "output.stress.every", json_integer((json_int_t)scene_number(par, "every", 20)));
-        snprintf(name, sizeof name, "realisation-%d", k);
-        good = dense_ask_both(run, name, &s, out);
-        const struct flow flow = { .viscosity = s.viscosity, .rate = s.rate, .discard = discard, .strain = strain };
-        for (int code = 0; good && code < 2; code++)
-            good = flow_read(run, out[code], "contact_normal,kinetic,drag", &flow, &a[2 * k + code]);
+        in_frame = 0;
     }
-    if (good) {
-        judge(run, &s, a, count);
-        draw(run, &run->results.item[0], a, count, discard, strain);
-    }
-    dense_start_free(&s);
-    free(a);
+    if (read)
+        table_free(&t);
+    if (!read || !frames)
+        check_garbage(run, !memory ? "the gate is out of memory" : !read ? why : "trajectory.csv has no whole snapshot in the steady part of the run");
+    for (int k = 0; k < 3; k++)
+        free(frame[k]);
+    return frames > 0;
 }
 
 const struct check dense_checks[] = {
-    { "dense-equivalence", dense_equivalence },
+    { "dense-viscosities", dense_viscosities },
     { "dense-path", dense_path },
+    { "contact-path", contact_path },
     { "dense-memory", dense_memory },
     { "equation-of-state", check_equation_of_state },
     { NULL, NULL },

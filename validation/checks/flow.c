@@ -12,7 +12,7 @@ enum { XX, XY, YX, YY, ZZ, COMPONENTS, MOST_ORIGINS = 8 };
 
 static int quantity_of(const char *origin)
 {
-    return strncmp(origin, "contact", 7) == 0 ? CONTACT : strcmp(origin, "lubrication") == 0 ? LUBRICATION
+    return strncmp(origin, "contact", 7) == 0 || strcmp(origin, "repulsion") == 0 ? CONTACT : strcmp(origin, "lubrication") == 0 ? LUBRICATION
          : strcmp(origin, "drag") == 0 ? DRAG : KINETIC;
 }
 
@@ -36,7 +36,7 @@ static int columns_of(const char *origins, char *columns, size_t room, int quant
 bool flow_read(struct check_run *run, const char *out, const char *origins, const struct flow *flow, struct flow_average *a)
 {
     char path[PATH_LENGTH], why[WHY_LENGTH], columns[2048];
-    int quantity[MOST_ORIGINS], rows = 0, in_bin[FLOW_BINS] = { 0 };
+    int quantity[MOST_ORIGINS], rows = 0;
     struct table t;
     const int count = columns_of(origins, columns, sizeof columns, quantity);
     path_join(path, out, "stress.csv");
@@ -62,11 +62,6 @@ bool flow_read(struct check_run *run, const char *out, const char *origins, cons
         sample[N1] = (normal[XX] - normal[YY]) / size;
         sample[N2] = (normal[YY] - normal[ZZ]) / size;
         const double now = table_at(&t, r, 1) * fabs(flow->rate);
-        const int bin = (int)(now / flow->strain * FLOW_BINS);
-        if (bin >= 0 && bin < FLOW_BINS) {
-            a->bin[bin] += sample[CONTACT];
-            in_bin[bin]++;
-        }
         if (now <= flow->discard)
             continue;
         for (int q = 0; q < FLOW_QUANTITIES; q++)
@@ -76,8 +71,6 @@ bool flow_read(struct check_run *run, const char *out, const char *origins, cons
     table_free(&t);
     for (int q = 0; q < FLOW_QUANTITIES; q++)
         a->mean[q] /= rows;
-    for (int b = 0; b < FLOW_BINS; b++)
-        a->bin[b] = in_bin[b] ? a->bin[b] / in_bin[b] : NAN;
     if (rows == 0)
         check_garbage(run, "stress.csv ends before the flow is steady");
     return rows > 0;

@@ -45,38 +45,6 @@ static const char *named(char text[96], int stream, const char *what)
     return text;
 }
 
-static const char *block_name(char text[160], const struct subject *s, size_t a, size_t b)
-{
-    static const char *const kind[2] = { "force", "torque" };
-    const size_t i = a / 2, j = b / 2;
-    int used = snprintf(text, 160, "<%s %zu, %s %zu> (radii %.4g and %.4g", kind[a % 2], i + 1, kind[b % 2], j + 1, s->f->radius[i],
-                        s->f->radius[j]);
-    for (size_t k = 0; k < s->f->pairs; k++)
-        if ((s->f->pair[k].i == i && s->f->pair[k].j == j) || (s->f->pair[k].i == j && s->f->pair[k].j == i))
-            used += snprintf(text + used, 160 - (size_t)used, ", gap xi = %.3g", s->f->pair[k].xi);
-    snprintf(text + used, 160 - (size_t)used, ")");
-    return text;
-}
-
-/* What a factor in the variance often means. */
-static const char *guess(const struct subject *s, double ratio)
-{
-    const struct { double value; const char *text; } known[] = {
-        { 2.0, " A factor 2: both sides of a pair draw, or noise is added twice." },
-        { 0.5, " A factor 1/2: kT where 2 kT belongs." },
-        { s->dt, " A factor dt: the noise lacks 1/sqrt(dt)." },
-        { 1.0 / s->dt, " A factor 1/dt: 1/dt where 1/sqrt(dt) belongs." },
-        { s->kT, " A factor kT: kT where sqrt(kT) belongs." },
-        { 1.0 / s->kT, " A factor 1/kT: sqrt(kT) is missing." },
-        { 1.0 / 3.0, " A factor 1/3: uniform numbers on (-1, 1) without the factor 3 of their variance." },
-        { 1.0 / 12.0, " A factor 1/12: uniform numbers on (-1/2, 1/2) without the factor 12 of their variance." },
-    };
-    for (size_t k = 0; k < sizeof known / sizeof *known; k++)
-        if (fabs(ratio / known[k].value - 1.0) < 0.03)
-            return known[k].text;
-    return "";
-}
-
 /* --- the resistance matrix itself --- */
 
 static void judge_resistance(const struct subject *s, int stream, const double *R)
@@ -97,7 +65,7 @@ static void judge_resistance(const struct subject *s, int stream, const double *
     snprintf(name, sizeof name, "R of %s: symmetric", force_of[stream]);
     check_error(s->run, INVARIANT, name, R[at], R[at % n * n + at / n], skew / largest, tolerance,
                 "the resistance measured from the candidate's own %s is not symmetric; worst block %s", force_of[stream],
-                block_name(block, s, at / n / 3, at % n / 3));
+                noise_block_name(block, s, at / n / 3, at % n / 3));
 
     gsl_matrix *copy = gsl_matrix_alloc(n, n);
     gsl_vector *eigenvalue = gsl_vector_alloc(n);
@@ -126,7 +94,7 @@ static void judge_model(const struct subject *s, const struct model *m)
         worst_see(&worst, s->R[LUBRICATION][k], theory[k], largest, k);
     check_error(s->run, MODEL, "R of lubrication: declared model", worst.measured, worst.expected, worst.error,
                 s->run->gate_case->tolerance, "the resistance matrix is not that of the declared lubrication: block %s has %s",
-                block_name(block, s, worst.at / s->size / 3, worst.at % s->size / 3), compare(&worst));
+                noise_block_name(block, s, worst.at / s->size / 3, worst.at % s->size / 3), compare(&worst));
     free(theory);
 }
 
@@ -191,33 +159,16 @@ static double torque_resolution(const struct subject *s, int stream)
     return worst;
 }
 
-/* "block <torque 1, torque 2> (...) is 4 times what ..." and what that often means; returns `text`. */
-static const char *blame(char text[640], const struct subject *s, int stream, const struct block_finding *w)
-{
-    char block[160];
-    block_name(block, s, w->a, w->b);
-    const char *hint = isnan(w->ratio) ? "" : guess(s, w->ratio);
-    if (w->a % 2 && w->b % 2 && w->a != w->b && stream == LUBRICATION && !hint[0])
-        hint = " The sign of the second sphere's torque noise (a minus; the plus of Li's printed eq 3.24 is wrong) shows here and"
-               " nowhere else.";
-    if (isnan(w->ratio))
-        snprintf(text, 640, "block %s of the covariance of the %s should vanish, and does not (z = %.3g)", block, kind_of[stream].name, w->z);
-    else
-        snprintf(text, 640, "block %s of the covariance of the %s is %.4g times what the candidate's own resistance asks for (z = %.3g).%s",
-                 block, kind_of[stream].name, w->ratio, w->z, hint);
-    return text;
-}
-
 static void judge_blocks(const struct subject *s, int stream, const double *C, const struct block_finding *w)
 {
-    char name[96], text[640];
+    char name[96], text[900];
     const bool pair = stream == LUBRICATION;
     struct result *r = check_p(s->run, INVARIANT, named(name, stream, "worst block"), w->ratio, isnan(w->ratio) ? NAN : 1.0, w->p,
                                pair ? torque_resolution(s, stream) : NAN, pair ? noise_declared(s, "torque_block") : NAN, "%s",
-                               blame(text, s, stream, w));
+                               noise_blame(text, s, stream, kind_of[stream].name, C, w));
     char block[160];
     result_notes(r, "Most deviating of all 3 x 3 blocks: %s, measured over expected %.4g, z = %.3g; p is corrected for the search. "
-                 "What it must see is a change of any <torque i, torque j> of neighbours.", block_name(block, s, w->a, w->b),
+                 "What it must see is a change of any <torque i, torque j> of neighbours.", noise_block_name(block, s, w->a, w->b),
                  w->ratio, w->z);
     draw_picture(s, stream, C, w, w->p < 1e-3, r);
 }
@@ -250,10 +201,10 @@ void noise_judge(struct subject *s, int stream, double stray)
     const size_t n = s->draws;
     const double count = (double)n;
     double *C = malloc(s->size * s->size * sizeof *C), wide = (double)s->whitening[stream].rank, ratio, fourth;
-    char name[96], text[640];
+    char name[96], text[900];
     statistics_covariance(s->draw[stream], n, s->size, C);
     const struct block_finding worst = statistics_worst_block(C, s->R[stream], 2 * s->f->count, n);
-    blame(text, s, stream, &worst);
+    noise_blame(text, s, stream, kind_of[stream].name, C, &worst);
 
     check_error(run, INVARIANT, named(name, stream, "nothing outside the range of R"), stray, 0.0, stray, 1e-12,
                 "the %s drives motions that the candidate's own friction does not resist (rigid translation, rolling, pairs out of "
@@ -261,7 +212,7 @@ void noise_judge(struct subject *s, int stream, double stray)
 
     const double size_p = statistics_scale_p(s->white[stream], n, s->whitening[stream].rank, &ratio);
     check_p(run, INVARIANT, named(name, stream, "size"), ratio, 1.0, size_p, seen * sqrt(2.0 / (count * wide)), noise_declared(s, "size"),
-            "the variance of the %s is %.5g times %s.%s", kind_of[stream].name, ratio, kind_of[stream].law, guess(s, ratio));
+            "the variance of the %s is %.5g times %s.%s", kind_of[stream].name, ratio, kind_of[stream].law, noise_guess(s, ratio));
 
     /* n |S - 1|^2/2 (Frobenius) must reach `seen` standard deviations of chi-squared with p(p + 1)/2 degrees */
     const double covariance_p = statistics_identity_p(s->white[stream], n, s->whitening[stream].rank);

@@ -56,6 +56,11 @@ struct subject {
 bool noise_whiten(struct subject *s, int stream, double *stray);
 /* Size, covariance, blocks, mean, whiteness, fourth moment; what is outside the range of R. */
 void noise_judge(struct subject *s, int stream, double stray);
+/* Words for what is wrong (noise_words.c): "<force 1, torque 2> (radii .., gap ..)"; what a factor often means; the worst block and all kinds. */
+const char *noise_block_name(char text[160], const struct subject *s, size_t a, size_t b);
+const char *noise_guess(const struct subject *s, double ratio);
+const char *noise_blame(char text[900], const struct subject *s, int stream, const char *name, const double *C,
+                        const struct block_finding *w);
 /* z that an effect must reach to be seen: 3.9 is the alarm (two-sided p = 1e-4), 2 more see it 39 times in 40. */
 #define NOISE_SEEN 5.9
 double noise_declared(const struct subject *s, const char *key);       /* parameters.declared.<key> */

@@ -321,9 +321,12 @@ const char *describe(const struct pair_state *p, size_t at)
 const char *compare(const struct worst *w)
 {
     static char text[160];
-    if (w->measured == 0)
+    const double rounding = 1e-9;       /* of the other number: nothing, for the reader */
+    if (isnan(w->measured))
+        snprintf(text, sizeof text, "no number where %.6g is expected", w->expected);
+    else if (fabs(w->measured) <= rounding * fabs(w->expected))
         snprintf(text, sizeof text, "nothing where %.6g is expected", w->expected);
-    else if (w->expected == 0)
+    else if (fabs(w->expected) <= rounding * fabs(w->measured))
         snprintf(text, sizeof text, "%.6g where nothing is expected", w->measured);
     else
         snprintf(text, sizeof text, "%.6g where %.6g is expected, %.6g of it", w->measured, w->expected,

@@ -227,7 +227,56 @@ static void expect(struct crowd *c)
     }
 }
 
-static void judge_forces(struct check_run *run, const struct crowd *c, const char *variant, const struct forces *f)
+/* Looks for one pair whose force is just what is missing from, or too much on, a sphere. */
+struct search { size_t sphere; int force; double off[3], tolerance; char *text; };
+
+static void try_pair(struct crowd *c, size_t i, size_t j, const double shift[3], void *data)
+{
+    struct search *s = data;
+    struct pair_state p = { .s = { c->sphere[i].s, c->sphere[j].s } };
+    struct expected e = { 0 };
+    double change[3];
+    if ((i != s->sphere && j != s->sphere) || i == j)
+        return;
+    apply(c->m.gradient, shift, change);
+    for (int k = 0; k < 3; k++) {
+        p.s[1].x[k] += shift[k];
+        p.s[1].u[k] += change[k];
+    }
+    history_of(c, i, j, &p);
+    (s->force == CONTACT ? expect_contact : expect_lubrication)(&c->m, &p, &e);
+    const double *own = e.pair.force[i == s->sphere ? 0 : 1], size = norm(own);
+    for (int sign = -1; sign <= 1 && size > 0; sign += 2) {
+        double rest = 0;
+        for (int k = 0; k < 3; k++)
+            rest = fmax(rest, fabs(s->off[k] - sign * own[k]));
+        if (rest <= s->tolerance * size)
+            snprintf(s->text, WHY_LENGTH, ": the pair with sphere %zu%s is %s", (i == s->sphere ? j : i) + 1,
+                     norm(shift) > 0 ? ", across a face," : "", sign < 0 ? "missing" : "counted twice");
+    }
+}
+
+/* What a wrong force on a sphere is made of: a lost or doubled pair; else what shear has to do with it. */
+static const char *crowd_words(struct crowd *c, int force, size_t at, const double *own, double tolerance, bool right_at_rest)
+{
+    static char text[WHY_LENGTH];
+    struct search s = { .sphere = at, .force = force, .tolerance = fmax(1e-6, tolerance), .text = text };
+    const bool flows = norm(c->m.gradient[0]) + norm(c->m.gradient[1]) + norm(c->m.gradient[2]) > 0;
+    for (int k = 0; k < 3; k++)
+        s.off[k] = own[k] - c->expected[at][force][k];
+    text[0] = '\0';
+    for (size_t other = 0; other < c->count && force != DRAG; other++)
+        each_image(c, other < at ? other : at, other < at ? at : other, range_of(c, at, other) * (1 + 1e-12), try_pair, &s);
+    if (text[0])
+        return text;
+    if (force == DRAG)
+        return flows && right_at_rest ? ": right at rest, so how the flow enters" : "";
+    if (flows && right_at_rest)
+        return ": right at rest, so the velocity of an image or the place of a remapped one";
+    return ", not one pair more or less: if single pairs are right, a neighbour is misplaced or several are lost";
+}
+
+static void judge_forces(struct check_run *run, struct crowd *c, const char *variant, const struct forces *f, bool right_at_rest[FORCES])
 {
     struct worst total = WORST_NONE;
     char what[128];
@@ -241,11 +290,14 @@ static void judge_forces(struct check_run *run, const struct crowd *c, const cha
             worst_see_vector(&w, own + 3, c->expected[k][force] + 3, 3, scale[1], k);
         }
         snprintf(what, sizeof what, "%s: %s", variant, force_name[force]);
+        const bool right = w.error <= run->gate_case->tolerance;
+        const char *words = right ? "" : crowd_words(c, force, w.at, forces_at(f, 0, force_name[force], (int)w.at + 1), run->gate_case->tolerance,
+                                                     right_at_rest[force]);
         check_error(run, MODEL, what, w.measured, w.expected, w.error, run->gate_case->tolerance,
-                    "%s: %s on sphere %zu (radius %g) is %s; %zu spheres, %zu pairs in range, %zu of them a sphere and its own "
-                    "image: a neighbour is lost, doubled, or seen with the wrong image velocity, if single pairs are right",
-                    variant, force_name[force], w.at + 1, c->sphere[w.at].s.radius, compare(&w), c->count, c->pairs,
-                    c->self_pairs);
+                    "%s: %s on sphere %zu (radius %g) is %s%s; %zu spheres, %zu pairs in range, %zu of them a sphere and its own image",
+                    variant, force_name[force], w.at + 1, c->sphere[w.at].s.radius, compare(&w), words, c->count, c->pairs, c->self_pairs);
+        if (norm(c->m.gradient[0]) + norm(c->m.gradient[1]) + norm(c->m.gradient[2]) == 0)
+            right_at_rest[force] = right;
     }
     for (size_t k = 0; k < c->count; k++)
         for (int d = 0; d < 6; d++) {
@@ -314,6 +366,7 @@ void pair_crowd(struct check_run *run)
 {
     size_t k;
     json_t *variant;
+    bool right_at_rest[FORCES] = { false };     /* of the variants so far; those without shear come first */
     json_array_foreach(json_object_get(run->gate_case->parameters, "variants"), k, variant)
     {
         const char *name = json_string_value(json_object_get(variant, "name"));
@@ -329,7 +382,7 @@ void pair_crowd(struct check_run *run)
             answered = ask(run, name, scene, &c, &answer);
         }
         if (answered) {
-            judge_forces(run, &c, name, &answer.forces);
+            judge_forces(run, &c, name, &answer.forces, right_at_rest);
             judge_stress(run, &c, name, &answer);
         }
         forces_free(&answer.forces);

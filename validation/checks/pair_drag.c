@@ -4,12 +4,13 @@
  * relative to it. Then the coefficients, by sphere and by flow plane.
  */
 #include "pair_checks.h"
+#include "pair_pattern.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-struct seen { struct worst still, power, force, torque, stress, total; };
+struct seen { struct worst still, power, force, torque, stress, total; struct pattern force_pattern, torque_pattern, flow[2] /* what the flow adds to force, torque */; };
 
 static void flow_at(struct model *m, const double x[3], double u[3], double w[3])
 {
@@ -38,6 +39,23 @@ static void fill(struct check_run *run, struct model *m, struct pair_book *book)
     gsl_rng_free(random);
 }
 
+/* Force and torque less those of the sphere's own motion in a fluid at rest. */
+static void see_flow(const struct model *m, struct seen *s, const struct theory_sphere *sphere, const double own[6],
+                     const double force[3], const double torque[3], double f, double t)
+{
+    static const double rest[3][3] = { { 0 } };
+    double still[3], still_torque[3], stresslet[3][3], mine[2][3], expected[2][3];
+    theory_drag(m->viscosity, m->drag_torque, rest, sphere, still, still_torque, stresslet);
+    for (int d = 0; d < 3; d++) {
+        mine[0][d] = own[d] - still[d];
+        mine[1][d] = own[3 + d] - still_torque[d];
+        expected[0][d] = force[d] - still[d];
+        expected[1][d] = torque[d] - still_torque[d];
+    }
+    for (int part = 0; part < 2; part++)
+        pattern_see(&s->flow[part], mine[part], expected[part], 3, part ? t : f, sphere->radius / m->radius[0], NAN, NULL, NULL);
+}
+
 static void see(struct model *m, const struct pair_book *book, const struct pair_answer *a, const double *stress, struct seen *s)
 {
     for (size_t k = 0; k < book->count; k++) {
@@ -59,6 +77,9 @@ static void see(struct model *m, const struct pair_book *book, const struct pair
                 worst_see(&s->power, fmax(power, 0), 0, f * (norm(u) + norm(sphere->u)), k);
                 worst_see_vector(&s->force, own, force, 3, f, k);
                 worst_see_vector(&s->torque, own + 3, torque, 3, t, k);
+                pattern_see(&s->force_pattern, own, force, 3, f, a1 / m->radius[0], NAN, NULL, NULL);
+                pattern_see(&s->torque_pattern, own + 3, torque, 3, t, a1 / m->radius[0], NAN, NULL, NULL);
+                see_flow(m, s, sphere, own, force, torque, f, t);
             }
             worst_see_vector(&s->total, total, own, 6, f, k);
             for (int d = 0; d < 9; d++)
@@ -70,14 +91,19 @@ static void see(struct model *m, const struct pair_book *book, const struct pair
 }
 
 static void judge(struct check_run *run, const struct pair_book *book, enum judgement judgement, const char *variant,
-                  const char *quantity, const struct worst *w, const char *fault)
+                  const char *quantity, const struct worst *w, const struct pattern *pattern, const struct pattern *flow,
+                  const char *fault)
 {
-    char what[128];
+    char what[128], words[2048] = "";
+    if (pattern)
+        snprintf(words, sizeof words, " %s", pattern_words(pattern));
+    if (flow && pattern_simple(flow) && !pattern_simple(pattern))
+        snprintf(words, sizeof words, " wrong by what the flow adds to it: that is %s", pattern_words(flow));
     snprintf(what, sizeof what, "%s: %s", variant, quantity);
     const struct pair_state *p = &book->item[w->at];
     check_error(run, judgement, what, w->measured, w->expected, w->error, run->gate_case->tolerance,
-                "%s: %s: %s; worst at radii %g and %g (state %zu)", variant, fault, compare(w), p->s[0].radius, p->s[1].radius,
-                w->at);
+                "%s: %s%s: %s; worst at radii %g and %g (state %zu)", variant, fault, words, compare(w), p->s[0].radius,
+                p->s[1].radius, w->at);
 }
 
 void pair_drag(struct check_run *run)
@@ -100,15 +126,21 @@ void pair_drag(struct check_run *run)
                 stress = answer_stress(run, &answer, book.count, "drag", m.volume);
         }
         if (stress) {
-            struct seen s = { WORST_NONE, WORST_NONE, WORST_NONE, WORST_NONE, WORST_NONE, WORST_NONE };
+            struct seen s = { .still = WORST_NONE, .power = WORST_NONE, .force = WORST_NONE, .torque = WORST_NONE, .stress = WORST_NONE,
+                              .total = WORST_NONE };
+            pattern_start(&s.force_pattern, run->gate_case->tolerance);
+            pattern_start(&s.torque_pattern, run->gate_case->tolerance);
+            pattern_start(&s.flow[0], run->gate_case->tolerance);
+            pattern_start(&s.flow[1], run->gate_case->tolerance);
+            s.force_pattern.of_size = s.torque_pattern.of_size = s.flow[0].of_size = s.flow[1].of_size = "the radius";
             see(&m, &book, &answer, stress, &s);
-            judge(run, &book, INVARIANT, name, "at rest in the flow", &s.still, "a sphere that moves and turns with the flow is dragged");
-            judge(run, &book, INVARIANT, name, "power", &s.power, "drag gives energy to motion relative to the flow");
-            judge(run, &book, INVARIANT, name, "total = sum of parts", &s.total, "`total` is not the drag");
-            judge(run, &book, MODEL, name, "force", &s.force, "6 pi eta a (U - u) is");
-            judge(run, &book, MODEL, name, "torque", &s.torque,
+            judge(run, &book, INVARIANT, name, "at rest in the flow", &s.still, NULL, NULL, "a sphere that moves and turns with the flow is dragged");
+            judge(run, &book, INVARIANT, name, "power", &s.power, NULL, NULL, "drag gives energy to motion relative to the flow");
+            judge(run, &book, INVARIANT, name, "total = sum of parts", &s.total, NULL, NULL, "`total` is not the drag");
+            judge(run, &book, MODEL, name, "force", &s.force, &s.force_pattern, &s.flow[0], "6 pi eta a (U - u) is");
+            judge(run, &book, MODEL, name, "torque", &s.torque, &s.torque_pattern, &s.flow[1],
                   m.drag_torque ? "8 pi eta a^3 (half the vorticity - w) is" : "the torque, switched off, is");
-            judge(run, &book, MODEL, name, "stresslet", &s.stress, "(20/3) pi eta a^3 E, summed over both spheres, is");
+            judge(run, &book, MODEL, name, "stresslet", &s.stress, NULL, NULL, "(20/3) pi eta a^3 E, summed over both spheres, is");
         }
         const bool answered = stress != NULL;
         free(stress);

@@ -14,13 +14,15 @@
  * Then the numbers of the model that the scene declares.
  */
 #include "pair_checks.h"
+#include "pair_pattern.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 struct seen {
-    struct worst third_law, balance, relabelling, total, power, cap, range, own_stress[2], force, torque[2], stress[2], residual;
+    struct worst third_law, balance, relabelling, total, power, cap, range, own_stress[2], force[2] /* along n, across n */, torque[2],
+        stress[2], residual;
 };
 
 /* Several histories per contact: none, one that sticks, one that slides; all with a part along n, to be projected out. */
@@ -127,12 +129,26 @@ static void see_relabelling(struct seen *s, const struct pair_book *book, const 
     }
 }
 
+/* Part 0 along n, part 1 across it: squeezing and the normal spring, sliding and friction. */
+static void split_force(const struct pair_state *p, const double force[3], double part[2][3])
+{
+    double n[3], r;
+    pair_geometry(p, n, &r);
+    for (int k = 0; k < 3; k++) {
+        part[0][k] = dot(force, n) * n[k];
+        part[1][k] = force[k] - part[0][k];
+    }
+}
+
 static void see_model(struct seen *s, const struct model *m, bool contact, const struct pair_state *p, size_t at,
                       const struct expected *e, const double *own[2])
 {
-    double n[3], r, residual[3], own_residual[3];
+    double n[3], r, residual[3], own_residual[3], mine[2][3], expected[2][3];
     pair_geometry(p, n, &r);
-    worst_see_vector(&s->force, own[0], e->pair.force[0], 3, e->force_scale, at);
+    split_force(p, own[0], mine);
+    split_force(p, e->pair.force[0], expected);
+    for (int part = 0; part < 2; part++)
+        worst_see_vector(&s->force[part], mine[part], expected[part], 3, e->force_scale, at);
     for (int side = 0; side < 2; side++)
         worst_see_vector(&s->torque[side], own[side] + 3, e->pair.torque[side], 3, e->torque_scale, at);
     if (contact && m->has_laws)
@@ -199,7 +215,69 @@ static void judge(struct check_run *run, const struct pair_book *book, enum judg
                 sentence, compare(w), describe(&book->item[w->at], w->at));
 }
 
-static void judge_all(struct check_run *run, const struct pair_book *book, const struct seen *s, bool contact)
+/* To what kind of contact a state belongs; the friction law may be another than the plain one, so `slides` is a guess there. */
+static void kinds_of(const struct model *m, const struct pair_state *p, const char *kind[2])
+{
+    double n[3], r, across[3];
+    const double h = pair_geometry(p, n, &r), along = dot(p->history, n);
+    for (int k = 0; k < 3; k++)
+        across[k] = p->history[k] - along * n[k];
+    kind[0] = p->with_history ? "with a history" : "without a history";
+    kind[1] = !p->with_history ? NULL
+              : norm(across) * m->contact.tangential_stiffness > m->contact.friction * m->contact.normal_stiffness * fmax(-h, 0)
+                  ? "where the contact slides"
+              : p->listed_backwards ? "where the history is listed from 2 to 1" : "where the contact sticks";
+}
+
+/* The force along n less that of the spring: what a dashpot adds. */
+static void without_spring(const struct model *m, const struct pair_state *p, double force[3])
+{
+    double n[3], r;
+    const double h = pair_geometry(p, n, &r);
+    for (int k = 0; k < 3; k++)
+        force[k] += m->contact.normal_stiffness * fmax(-h, 0) * n[k];
+}
+
+/* A quantity of the model, with the pattern of its ratios: part 0, 1 of the force, or 2, 3: torque on 1, 2. */
+static void judge_pattern(struct check_run *run, const struct model *m, const struct pair_book *book, const struct pair_answer *a,
+                          const char *force, bool contact, int part, const struct worst *w)
+{
+    static const char *const what[] = { "force along n", "force across n", "torque on 1", "torque on 2" };
+    struct pattern pattern, damped;
+    char dashpot[512] = "";
+    pattern_start(&pattern, run->gate_case->tolerance);
+    pattern_start(&damped, run->gate_case->tolerance);
+    for (size_t k = 0; k < book->count && !(w->error <= run->gate_case->tolerance); k++) {
+        const struct pair_state *p = &book->item[k];
+        const double ratio = p->s[1].radius / p->s[0].radius;
+        struct expected e;
+        double mine[2][3], expected[2][3];
+        const char *kind[2] = { NULL, NULL };
+        (contact ? expect_contact : expect_lubrication)(m, p, &e);
+        split_force(p, forces_at(&a->forces, k, force, 1), mine);
+        split_force(p, e.pair.force[0], expected);
+        if (contact)
+            kinds_of(m, p, kind);
+        if (part < 2)
+            pattern_see(&pattern, mine[part], expected[part], 3, e.force_scale, ratio, p->xi, kind[0], kind[1]);
+        else
+            pattern_see(&pattern, forces_at(&a->forces, k, force, part - 1) + 3, e.pair.torque[part - 2], 3, e.torque_scale, ratio,
+                        p->xi, kind[0], kind[1]);
+        if (part == 0 && contact && m->has_laws) {
+            without_spring(m, p, mine[0]);
+            without_spring(m, p, expected[0]);
+            pattern_see(&damped, mine[0], expected[0], 3, e.force_scale, ratio, p->xi, kind[0], kind[1]);
+        }
+    }
+    if (pattern_simple(&damped))
+        snprintf(dashpot, sizeof dashpot, "; less the spring it is %s", pattern_words(&damped));
+    check_error(run, MODEL, what[part], w->measured, w->expected, w->error, run->gate_case->tolerance,
+                "%s of %s: %s%s; worst is %s at %s", what[part], force, pattern_words(&pattern), dashpot, compare(w),
+                describe(&book->item[w->at], w->at));
+}
+
+static void judge_all(struct check_run *run, const struct model *m, const struct pair_book *book, const struct pair_answer *a,
+                      const char *force, const struct seen *s, bool contact)
 {
     judge(run, book, INVARIANT, "third law", &s->third_law, "the force on 2 is not minus the force on 1");
     judge(run, book, INVARIANT, "torque balance", &s->balance,
@@ -214,9 +292,8 @@ static void judge_all(struct check_run *run, const struct pair_book *book, const
           "the stress is not F (x) r / V of the candidate's own force");
     judge(run, book, INVARIANT, "tangential stress from own forces", &s->own_stress[1],
           "the tangential stress is not F_t (x) r / V of the candidate's own force");
-    judge(run, book, MODEL, "force", &s->force, "the force on 1 is");
-    judge(run, book, MODEL, "torque on 1", &s->torque[0], "the torque on 1 is");
-    judge(run, book, MODEL, "torque on 2", &s->torque[1], "the torque on 2 is");
+    for (int part = 0; part < 4; part++)
+        judge_pattern(run, m, book, a, force, contact, part, part < 2 ? &s->force[part] : &s->torque[part - 2]);
     judge(run, book, MODEL, "torque residual", &s->residual, "T_1 + T_2 + r x F_2 is not what the declared lever leaves");
     judge(run, book, MODEL, contact ? "normal stress" : "stress", &s->stress[0], "the stress times the volume is");
     judge(run, book, MODEL, "tangential stress", &s->stress[1], "the tangential stress times the volume is");
@@ -253,7 +330,7 @@ void pair_forces(struct check_run *run)
             }
         }
         if (see_stress(run, &s, &m, contact, &book, &answer))
-            judge_all(run, &book, &s, contact);
+            judge_all(run, &m, &book, &answer, force, &s, contact);
     }
     forces_free(&answer.forces);
     book_free(&book);

@@ -22,7 +22,9 @@ static const char *const motion_fault[MOTIONS] = {
 };
 
 /* What was done to a state: which state it must equal, and how its answer is turned back. */
-struct view { enum motion motion; size_t base; double turn[3][3]; int shift[3]; };
+struct view { enum motion motion; size_t base; double turn[3][3]; int shift[3]; bool faster /* the image has another velocity */; };
+/* Images that are wrong, apart for those that move like the original ([0]) and those with another velocity ([1]). */
+struct images { size_t seen[2], wrong[2]; };
 struct views { struct pair_book book; struct view *view; };
 
 static void add_view(struct views *v, const struct pair_state *p, const struct view *how)
@@ -56,6 +58,7 @@ static void add_images(struct views *v, struct model *m, const struct pair_state
         double d[3];
         lattice_vector(m, how.shift, d);
         move(m, &p.s[1], d);
+        how.faster = norm(p.s[1].u) != norm(base->s[1].u);
         if (code != 13)
             add_view(v, &p, &how);
     }
@@ -149,10 +152,12 @@ static void scales(const struct model *m, const char *force, const struct pair_s
     *t = e.torque_scale;
 }
 
-static void see(struct model *m, const char *force, const struct views *v, const struct pair_answer *a, struct worst worst[MOTIONS])
+static void see(struct model *m, const char *force, const struct views *v, const struct pair_answer *a, double tolerance,
+                struct worst worst[MOTIONS], struct images *images)
 {
     for (size_t k = 0; k < v->book.count; k++) {
         struct view *how = &v->view[k];
+        struct worst here = WORST_NONE;
         double f, t, expected[3];
         scales(m, force, &v->book.item[how->base], &f, &t);
         for (int part = 0; part < 4 && how->motion != INSIDE; part++) { /* force, torque on 1; on 2 */
@@ -162,23 +167,45 @@ static void see(struct model *m, const char *force, const struct views *v, const
             if (how->motion == TURNED)
                 apply(how->turn, before, expected);
             worst_see_vector(&worst[how->motion], now, expected, 3, part % 2 ? t : f, k);
+            worst_see_vector(&here, now, expected, 3, part % 2 ? t : f, k);
+        }
+        if (how->motion == IMAGE) {
+            images->seen[how->faster]++;
+            images->wrong[how->faster] += !(here.error <= tolerance);
         }
     }
 }
 
-static void judge(struct check_run *run, const char *variant, const struct views *v, const struct worst worst[MOTIONS])
+/* Which images are wrong says what is wrong with them. */
+static const char *image_words(const struct images *i)
+{
+    if (i->wrong[0] == 0 && i->seen[0] > 0)
+        return "; only images with another velocity are wrong: the image velocity";
+    if (i->wrong[1] == 0 && i->seen[1] > 0)
+        return "; only images with the same velocity are wrong";
+    return i->seen[1] > 0 ? "; images with and without another velocity are wrong: their place, or how they are found"
+                          : "; images are misplaced, or not found";
+}
+
+/* `right_still`: whether this motion was right in every cell without shear so far; those come first in a case. */
+static void judge(struct check_run *run, const char *variant, const struct views *v, const struct worst worst[MOTIONS],
+                  const struct images *images, bool still, bool right_still[MOTIONS])
 {
     for (int motion = IMAGE; motion < MOTIONS; motion++) {
         const struct worst *w = &worst[motion];
         if (w->error == -1)
             continue;
         char what[128], where[64] = "";
+        const char *which = motion == IMAGE ? image_words(images)
+                            : !still && right_still[motion] ? "; right without shear, so the velocity of an image or of a wrapped sphere" : "";
+        if (still)
+            right_still[motion] = w->error <= run->gate_case->tolerance;
         const struct view *how = &v->view[w->at];
         snprintf(what, sizeof what, "%s: %s", variant, motion_name[motion]);
         if (motion == IMAGE)
             snprintf(where, sizeof where, ", shifted by %d, %d, %d cell vectors", how->shift[0], how->shift[1], how->shift[2]);
         check_error(run, INVARIANT, what, w->measured, w->expected, w->error, run->gate_case->tolerance,
-                    "%s: %s: %s; worst at %s%s", variant, motion_fault[motion], compare(w),
+                    "%s: %s%s: %s; worst at %s%s", variant, motion_fault[motion], which, compare(w),
                     describe(&v->book.item[w->at], w->at), where);
     }
 }
@@ -188,6 +215,7 @@ void pair_frames(struct check_run *run)
     const char *force = json_string_value(json_object_get(run->gate_case->parameters, "force"));
     size_t k;
     json_t *variant;
+    bool right_still[MOTIONS] = { false };
     json_array_foreach(json_object_get(run->gate_case->parameters, "variants"), k, variant)
     {
         const char *name = json_string_value(json_object_get(variant, "name"));
@@ -202,8 +230,9 @@ void pair_frames(struct check_run *run)
             answered = book_ask(run, name, scene, &v.book, force, &answer);
         }
         if (answered) {
-            see(&m, force, &v, &answer, worst);
-            judge(run, name, &v, worst);
+            struct images images = { { 0 }, { 0 } };
+            see(&m, force, &v, &answer, run->gate_case->tolerance, worst, &images);
+            judge(run, name, &v, worst, &images, norm(m.gradient[0]) + norm(m.gradient[1]) + norm(m.gradient[2]) == 0, right_still);
         }
         forces_free(&answer.forces);
         book_free(&v.book);

@@ -9,6 +9,7 @@
  * tells from the pattern over gaps and sizes what kind of mistake it is.
  */
 #include "pair_checks.h"
+#include "pair_pattern.h"
 #include "pair_picture.h"
 
 #include <gsl/gsl_eigen.h>
@@ -199,38 +200,25 @@ static const char *entry_name(const struct entry *e)
     return text;
 }
 
-/* What the ratio measured/expected of one entry looks like over sizes and gaps, in words. */
-static void pattern(const struct survey *s, int k, double tolerance, char *text, size_t room)
+/* Coefficients that could stand in each other's place: of the same dimension. */
+static const char *stands_for(const struct survey *s, int k)
 {
-    double low = INFINITY, high = -INFINITY, over_gaps = 0, over_sizes = 0, equal_sizes = 0;
-    for (size_t b = 0; b < s->sizes; b++)
-        for (size_t g = 0; g < s->gaps; g++) {
-            double q = s->measured[k][b][g] / s->expected[k][b][g];
-            q = fabs(q) < 1e-9 ? 0 : q; /* no "-0" or rounding in the words */
-            low = fmin(low, q);
-            high = fmax(high, q);
-            over_gaps = fmax(over_gaps, fabs(q - s->measured[k][b][0] / s->expected[k][b][0]));
-            over_sizes = fmax(over_sizes, fabs(q - s->measured[k][0][g] / s->expected[k][0][g]));
-            if (s->ratio[b] == 1)
-                equal_sizes = fmax(equal_sizes, fabs(q - 1));
-        }
-    const double same = 1e-6 * (fabs(low) + fabs(high));
-    if (fmax(fabs(low), fabs(high)) < 1e-9)
-        snprintf(text, room, "nothing of expected at every gap and size ratio: the term is missing");
-    else if (high - low <= same && fabs(low + 1) < 1e-6)
-        snprintf(text, room, "the opposite sign at every gap and size ratio");
-    else if (high - low <= same)
-        snprintf(text, room, "%.6g of expected at every gap and size ratio: a factor, or a resistance function or its index", low);
-    else if (over_gaps <= same)
-        snprintf(text, room, "%.4g to %.4g of expected, by size ratio, the same at every gap%s", low, high,
-                 equal_sizes < tolerance ? ": right for equal radii, so an index or a power of the size ratio"
-                                         : ": a factor of the size ratio");
-    else if (over_sizes <= same)
-        snprintf(text, room, "%.4g to %.4g of expected, by gap, the same at every size ratio: the dependence on the gap, or a cut-off",
-                 low, high);
-    else
-        snprintf(text, room, "%.4g to %.4g of expected, by gap and size ratio%s", low, high,
-                 equal_sizes < tolerance ? "; right for equal radii: how the gap is scaled, or a size ratio" : "");
+    static char text[64];
+    static const int kind[THEORY_SCALARS] = { [THEORY_XA] = 0, [THEORY_YA] = 0, [THEORY_B1] = 1, [THEORY_B2] = 1, [THEORY_C11] = 2,
+                                              [THEORY_C12] = 2, [THEORY_C22] = 2 };
+    const int own = entries[k].coefficient;
+    for (int other = 0; other < ENTRIES; other++) {
+        const int c = entries[other].coefficient;
+        bool same = c != own && kind[c] == kind[own];
+        for (size_t b = 0; same && b < s->sizes; b++)
+            for (size_t g = 0; same && g < s->gaps; g++)
+                same = fabs(fabs(s->measured[k][b][g]) - fabs(s->expected[other][b][g])) <= 1e-6 * fabs(s->expected[other][b][g]);
+        if (!same)
+            continue;
+        snprintf(text, sizeof text, "; it has the size of %s everywhere", theory_scalar_name[c]);
+        return text;
+    }
+    return "";
 }
 
 /* Names the wrong entries with their patterns; entries that are wrong in the same way share one. */
@@ -238,20 +226,29 @@ static void judge_coefficient(struct check_run *run, const struct survey *s, int
 {
     const double tolerance = run->gate_case->tolerance;
     struct worst all = WORST_NONE;
-    char sentence[WHY_LENGTH] = "", words[256], last[256] = "";
+    char sentence[WHY_LENGTH] = "", words[640], last[640] = "";
+    int stands = 0, wrong = 0, ways = 0;
     for (int k = 0; k < ENTRIES; k++) {
         struct worst w = WORST_NONE;
+        struct pattern pattern;
         if (entries[k].coefficient != coefficient)
             continue;
+        pattern_start(&pattern, tolerance);
         for (size_t b = 0; b < s->sizes; b++)
-            for (size_t g = 0; g < s->gaps; g++)
-                worst_see(&w, s->measured[k][b][g], s->expected[k][b][g], fabs(s->expected[k][b][g]), 0);
+            for (size_t g = 0; g < s->gaps; g++) {
+                const double *measured = &s->measured[k][b][g], *expected = &s->expected[k][b][g];
+                worst_see(&w, *measured, *expected, fabs(*expected), 0);
+                pattern_see(&pattern, measured, expected, 1, fabs(*expected), s->ratio[b], s->xi[g], NULL, NULL);
+            }
+        stands++;
         if (!(w.error <= all.error))
             all = w;
         if (w.error <= tolerance)
             continue;
-        pattern(s, k, tolerance, words, sizeof words);
+        wrong++;
+        snprintf(words, sizeof words, "%s%s", pattern_words(&pattern), stands_for(s, k));
         const bool same = strcmp(words, last) == 0;
+        ways += !same;
         size_t used = strlen(sentence);
         if (same) /* before the words that both share */
             used -= strlen(last) + 2;
@@ -259,6 +256,8 @@ static void judge_coefficient(struct check_run *run, const struct survey *s, int
                  words);
         snprintf(last, sizeof last, "%s", words);
     }
+    if (stands > 1 && wrong == stands && ways == 1)
+        snprintf(sentence, sizeof sentence, "wherever it stands in R: %s", last);
     check_error(run, MODEL, theory_scalar_name[coefficient], all.measured, all.expected, all.error, tolerance, "%s, %s",
                 theory_scalar_name[coefficient], sentence);
 }

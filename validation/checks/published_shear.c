@@ -13,12 +13,12 @@
  * realisations.csv (written as the runs end), points.csv and structure.csv stay in the case's work folder.
  */
 #include "published_shear.h"
+#include "sheared_point.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 
 enum { MOST_POINTS = 16, MOST_REALISATIONS = 64 };
 
@@ -38,65 +38,15 @@ struct point {
     struct structure structure;
 };
 
-static double children_seconds(void)
-{
-    struct rusage used;
-    getrusage(RUSAGE_CHILDREN, &used);
-    return (double)(used.ru_utime.tv_sec + used.ru_stime.tv_sec) + 1e-6 * (double)(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
-}
-
-/* A number of the point, else of the case. */
-static double number_of(const struct check_run *run, const struct point *p, const char *key, double otherwise)
-{
-    return scene_number(p->json, key, scene_number(run->gate_case->parameters, key, otherwise));
-}
-
-/* The case's scene with the point's numbers: "rate", "density" (of all species), and any path under "set". */
-static json_t *scene_of(const struct check_run *run, const struct point *p)
-{
-    json_t *scene = json_deep_copy(run->gate_case->scene), *value, *species;
-    const char *path;
-    size_t k;
-    json_object_foreach (json_object_get(p->json, "set"), path, value)
-        scene_set(scene, path, json_deep_copy(value));
-    if ((value = json_object_get(p->json, "rate")))
-        scene_set(json_array_get(json_object_get(scene, "shear"), 0), "rate", json_deep_copy(value));
-    if ((value = json_object_get(p->json, "density")))
-        json_array_foreach (json_object_get(scene, "species"), k, species)
-            scene_set(species, "density", json_deep_copy(value));
-    return scene;
-}
-
-/* The whole length of the run and what it writes: in steps, for a candidate may not know strain. */
-static void set_output(const struct check_run *run, const struct point *p, const struct dense_start *s, const struct flow *flow)
-{
-    const char *scheme = json_object_iter_key(json_object_iter(json_object_get(s->scene, "dynamics")));
-    char path[64];
-    snprintf(path, sizeof path, "dynamics.%s.dt", scheme ? scheme : "");
-    const double dt = scene_number(s->scene, path, NAN), per_strain = 1 / (fabs(s->rate) * dt), snapshots = number_of(run, p, "snapshots", 0);
-    scene_set(s->scene, "run", json_pack("{sI}", "steps", (json_int_t)ceil(flow->strain * per_strain)));
-    scene_set(s->scene, "output.stress.every", json_integer((json_int_t)number_of(run, p, "every", 20)));
-    if (snapshots > 0)
-        scene_set(s->scene, "output.states.every", json_integer((json_int_t)((flow->strain - flow->discard) * per_strain / snapshots)));
-}
-
 static bool run_point(struct check_run *run, struct point *p, int k)
 {
     struct dense_start s;
     char name[128], out[PATH_LENGTH];
     double value[POINT_QUANTITIES];
     struct flow_average average;
-    struct flow flow = { .discard = number_of(run, p, "discard", 1.5), .strain = number_of(run, p, "strain", 4) };
-    json_t *scene = scene_of(run, p);
-    const bool started = dense_start_in(run, scene, run->seed * 1000 + (unsigned)k, &s);
-    json_decref(scene);
-    if (!started)
+    struct flow flow;
+    if (!point_start(run, p->json, k, &s, &flow))
         return false;
-    flow.viscosity = s.viscosity;
-    flow.rate = s.rate;
-    scene_set(s.scene, "seed", json_integer(run->seed));
-    scene_set(s.scene, "realisation", json_integer(k));
-    set_output(run, p, &s, &flow);
     for (int q = 0; q < POINT_QUANTITIES; q++)
         value[q] = NAN;
     snprintf(name, sizeof name, "%s-%d", p->name, k);
@@ -111,7 +61,7 @@ static bool run_point(struct check_run *run, struct point *p, int k)
         value[q] = average.mean[q];
     good = good && flow_read(run, out, "kinetic", &flow, &average);
     value[KINETIC] = good ? average.mean[KINETIC] : NAN;
-    if (good && number_of(run, p, "snapshots", 0) > 0)
+    if (good && point_number(run, p->json, "snapshots", 0) > 0)
         good = structure_read(run, out, &s, flow.discard, value, &p->structure);
     for (int q = 0; q < POINT_QUANTITIES; q++)
         p->value[q][k] = value[q];

@@ -7,15 +7,11 @@
  * Li (2026) eq. 3.54 with shell 0.05, overlapping pairs included, and with the thermal depth of a soft contact added to the
  * shell's thickness, without which the estimate is 3 % high at kT = 0.017 and k_n = 1e4. The shell averages g over its thickness;
  * a second, thinner one allows for a straight line to none. Only the shear part is formed here.
- *
- * Positions are unwrapped. In the shear u_x = rate y the image n cells up along y is displaced by n rate t edge along x as well;
- * after both reductions every pair nearer than half an edge is found, and once.
  */
 #include "published_shear.h"
 
 #include <gsl/gsl_math.h>
 #include <math.h>
-#include <stdlib.h>
 
 static const double shell_of[2] = { 0.05, 0.02 };
 static const double near_of[2] = { 0.05, 0.005 };    /* xi of pairs that count as near, and as touching */
@@ -50,23 +46,19 @@ static void see_pair(struct count *c, const struct crowd *crowd, double a, doubl
     }
 }
 
-static void see_snapshot(struct count *c, const struct crowd *crowd, const double *x, double time)
+struct seeing { struct count *count; const struct crowd *crowd; };
+
+static void see_snapshot(void *to, const struct dense_start *s, const struct dense_snapshot *now)
 {
-    const struct dense_start *s = crowd->start;
-    const double edge = s->edge, lean = s->rate * time;
+    const struct seeing *seeing = to;
+    const double *radius = seeing->crowd->radius;
     for (size_t i = 0; i < s->count; i++)
         for (size_t j = i + 1; j < s->count; j++) {
             double d[3];
-            for (int k = 0; k < 3; k++)
-                d[k] = x[3 * j + (size_t)k] - x[3 * i + (size_t)k];
-            d[2] -= edge * nearbyint(d[2] / edge);
-            const double up = edge * nearbyint(d[1] / edge);
-            d[1] -= up;
-            d[0] -= up * lean;
-            d[0] -= edge * nearbyint(d[0] / edge);
-            see_pair(c, crowd, crowd->radius[s->row[i].species - 1], crowd->radius[s->row[j].species - 1], d);
+            dense_pair(s, now, i, j, d);
+            see_pair(seeing->count, seeing->crowd, radius[s->row[i].species - 1], radius[s->row[j].species - 1], d);
         }
-    c->snapshots += 1;
+    seeing->count->snapshots += 1;
 }
 
 /* Centre of the fullest bin, by g, within 0.1 of r: farther, the flank of another peak may be higher. */
@@ -115,8 +107,6 @@ static void conclude(const struct count *c, const struct crowd *crowd, double kT
 bool structure_read(struct check_run *run, const char *out, const struct dense_start *s, double discard, double value[POINT_QUANTITIES],
                     struct structure *sum)
 {
-    char path[PATH_LENGTH], why[WHY_LENGTH];
-    struct table t;
     struct count c = { 0 };
     const json_t *species = json_object_get(s->scene, "species");
     const double kT = scene_number(s->scene, "fluid.kT", 0);
@@ -124,32 +114,8 @@ bool structure_read(struct check_run *run, const char *out, const struct dense_s
     for (size_t k = 0; k < 8 && k < json_array_size(species); k++)
         crowd.radius[k] = scene_number(json_array_get(species, k), "radius", 1);
     crowd.unit = crowd.radius[0];
-    double *x = calloc(s->count, 3 * sizeof *x);
-    path_join(path, out, "trajectory.csv");
-    if (!x || !table_read(path, "step,time,id,x,y,z", &t, why)) {
-        check_garbage(run, x ? why : "the gate is out of memory");
-        free(x);
+    if (!dense_snapshots(run, out, s, discard, see_snapshot, &(struct seeing){ &c, &crowd }))
         return false;
-    }
-    size_t seen = 0;
-    for (size_t r = 0; r < t.rows; r++) {
-        const double id = table_at(&t, r, 2);
-        if (id < 1 || id > (double)s->count)
-            continue;
-        for (size_t k = 0; k < 3; k++)
-            x[3 * ((size_t)id - 1) + k] = table_at(&t, r, 3 + k);
-        seen++;
-        if (r + 1 < t.rows && table_at(&t, r + 1, 0) == table_at(&t, r, 0))
-            continue;
-        if (seen == s->count && table_at(&t, r, 1) * fabs(s->rate) > discard)
-            see_snapshot(&c, &crowd, x, table_at(&t, r, 1));
-        seen = 0;
-    }
-    table_free(&t);
-    free(x);
-    if (c.snapshots > 0)
-        conclude(&c, &crowd, kT, value, sum);
-    else
-        check_garbage(run, "trajectory.csv has no whole snapshot in the steady part of the run");
-    return c.snapshots > 0;
+    conclude(&c, &crowd, kT, value, sum);
+    return true;
 }
