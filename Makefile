@@ -143,6 +143,9 @@ sanitize: all ## unit tests and the gate's cases under address and undefined-beh
 memcheck: all ## valgrind on one run of everything at once
 	@tools/memcheck.sh
 
+adapters: all ## the worked examples of docs/adapter.md (Fortran, Python, a LAMMPS dump) and mistakes planted in them
+	@tools/adapters/adapters.sh $B
+
 scenes: all ## run every sample scene and draw its plot (at most 20 s each)
 	@tools/scenes.sh
 
@@ -188,6 +191,9 @@ audit: ## golden vectors and closed forms of the gate, recomputed in quadruple p
 	@$(MAKE) $(PARALLEL) $B/audit
 	@$B/audit
 
+verdicts: ## docs/verdicts.md against the cases and the results of the last make validate
+	@python3 tools/docs/verdicts.py --run
+
 work-precision: all ## seconds for 1 % of the pairs near contact, by integrator and step (about 5 minutes; keeps finished rows)
 	@tools/work-precision.sh $B
 
@@ -197,6 +203,6 @@ help: ## this list
 clean: ## remove build/
 	rm -rf $B
 
-.PHONY: all setup validate test lines coverage sanitize memcheck scenes faults calibrate bench scaling golden engine engine-cost second-opinion ci-files \
-	suite-manifest vectors audit work-precision help clean FORCE
+.PHONY: all setup validate test lines coverage sanitize memcheck adapters scenes faults calibrate bench scaling golden engine engine-cost second-opinion ci-files \
+	suite-manifest vectors audit verdicts work-precision help clean FORCE
 -include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS) $(ENGINE) $(GOLDEN) $(AUDIT) tools/compare/checkpoints.c))

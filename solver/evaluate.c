@@ -256,10 +256,68 @@ static bool evaluate_run(struct simulation *sim, const char *scene, const char *
     return simulation_begin(sim, e) && simulation_run(sim, e);
 }
 
+/* Of the image where the particle was put: some have been wrapped into the cell. */
+static void write_velocities(FILE *out, const struct suspension *s)
+{
+    const struct particles *p = &s->particles;
+    for (int i = 0; i < p->count; i++) {
+        const vec3 none = { 0, 0, 0 }, u = plus(p->velocity[i], box_flow(&s->box, box_unwrapped(&s->box, p->image[i])));
+        fwrite(&u, sizeof(double), 3, out);
+        fwrite(p->spin ? &p->spin[i] : &none, sizeof(double), 3, out);
+    }
+}
+
+/*
+ * A few steps from every state, as a program without a way to tell its forces would make them: velocities and spins at each step, and the stress
+ * of the start. No limit of overlap or step: whoever asks has chosen dt so that nothing moves noticeably.
+ */
+static bool evaluate_steps(struct simulation *sim, const struct state_file *states, const struct contacts *contacts, int64_t steps,
+                           bool stress, struct error *e)
+{
+    struct suspension *s = &sim->suspension;
+    struct table velocities = { .file = NULL }, stresses = { .file = NULL };
+    const int count = state_file_count(states);
+    bool relisted = true;
+    struct destination bare = sim->destination;
+    bare.provenance[0] = 0;
+    if (!table_open(&velocities, &bare, "velocities.npy", e) || (stress && !table_open(&stresses, &sim->destination, "stress.csv", e)))
+        return false;
+    if (stress) {
+        fputs("state", stresses.file);
+        stress_write_names(stresses.file, &s->stress);
+    }
+    for (int k = 0; k < count && !error_raised(e); k++) {
+        s->step = 0;
+        box_set_time(&s->box, s->start_time);
+        if (!place(s, states, k, e) || !neighbours_find(&s->neighbours, &s->box, &s->particles, &relisted, e))
+            break;
+        if (k == 0)
+            npy_header(velocities.file, count * (steps + 1), s->particles.count);
+        contacts_place(contacts, k, s);
+        s->measuring = stress;
+        stress_clear(&s->stress);
+        if (!sim->dynamics->begin(sim->dynamics, s, &relisted, e))
+            break;
+        if (stress) {
+            stress_kinetic(&s->stress, s->kinetic_origin, &s->box, &s->particles);
+            stress_finish(&s->stress, s->box.volume);
+            fprintf(stresses.file, "%d", k);
+            stress_write_values(stresses.file, &s->stress);
+        }
+        s->measuring = false;
+        write_velocities(velocities.file, s);
+        while (s->step < steps && sim->dynamics->step(sim->dynamics, s, &relisted, e))
+            write_velocities(velocities.file, s);
+    }
+    table_close(&velocities, e);
+    table_close(&stresses, e);
+    return !error_raised(e);
+}
+
 bool evaluate_case(const char *case_folder, const char *out_folder, struct error *e)
 {
-    static const char *const protocols[] = { "forces", "noise", "friction", "run", NULL };
-    enum { FORCES, DRAWS, IMPULSES, RUN };
+    static const char *const protocols[] = { "forces", "noise", "friction", "steps", "run", NULL };
+    enum { FORCES, DRAWS, IMPULSES, STEPS, RUN };
     char path[512], scene[512], start[512] = "";
     struct settings c;
     snprintf(path, sizeof path, "%.400s/case.json", case_folder);
@@ -268,6 +326,8 @@ bool evaluate_case(const char *case_folder, const char *out_folder, struct error
     const int protocol = settings_choice(&c, "protocol", protocols, e);
     const int64_t pause = protocol == RUN && settings_has(&c, "pause") ? settings_whole(&c, "pause", 1, INT64_MAX, e) : 0;
     const long draws = protocol == DRAWS || protocol == IMPULSES ? (long)settings_whole(&c, "draws", 1, 1000000000, e) : 0;
+    const int64_t steps = protocol == STEPS ? settings_whole(&c, "steps", 1, 1000000000, e) : 0;
+    const bool stress = protocol == STEPS && settings_has(&c, "stress") && settings_flag(&c, "stress", e);
     snprintf(scene, sizeof scene, "%.350s/%.150s", case_folder, settings_text(&c, "scene", e));
     if (protocol != RUN)
         snprintf(start, sizeof start, "%.350s/%.150s", case_folder, settings_text(&c, "states", e));
@@ -290,6 +350,8 @@ bool evaluate_case(const char *case_folder, const char *out_folder, struct error
             evaluate_forces(sim, states, &contacts, e);
         else if (protocol == DRAWS)
             evaluate_noise(sim, states, draws, e);
+        else if (protocol == STEPS)
+            evaluate_steps(sim, states, &contacts, steps, stress, e);
         else if (protocol == IMPULSES)
             evaluate_friction(sim, states, draws, e);
         else

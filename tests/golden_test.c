@@ -1,4 +1,7 @@
-/* Golden vectors (golden/vectors) are what tools/golden makes from validation/theory now, byte for byte. `make vectors` holds the solver to them. */
+/*
+ * Pages and data that are made: golden vectors (golden/vectors) are what tools/golden makes from validation/theory now, byte for byte. `make vectors`
+ * holds the solver to them. docs/verdicts.md is what its script makes of the cases.
+ */
 #include "suite.h"
 #include "vectors.h"
 
@@ -49,9 +52,16 @@ static void wrong_folders_are_said(void)
     check_true(!vectors_write_all("/nowhere/at/all", &files), "a folder that is not there is refused");
 }
 
+/* What the cases say stands in docs/verdicts.md; the tables of quantities are compared with a run by `make verdicts`. */
+static void verdicts_page_is_made_from_the_cases(void)
+{
+    check_true(system("python3 tools/docs/verdicts.py >build/verdicts.txt 2>&1 || { cat build/verdicts.txt; exit 1; }") == 0, "docs/verdicts.md is current");
+}
+
 static const struct unit_test tests[] = {
     { "golden vectors are what the generator makes", vectors_are_what_the_generator_makes },
     { "a folder that is not there", wrong_folders_are_said },
+    { "docs/verdicts.md is made from the cases", verdicts_page_is_made_from_the_cases },
     { NULL, NULL },
 };
 

@@ -2,7 +2,7 @@
 # Installs what building, testing and comparing needs; says nothing and does nothing where all of it is there.
 # `setup.sh gate`: only what build/gate needs, for those who judge another code.
 set -eu
-packages="gcc make libc6-dev libjansson-dev librandom123-dev libgsl-dev libcunit1-dev lammps liblammps-dev openmpi-bin libopenmpi-dev pkg-config gnuplot-nox valgrind gcovr libxml2-utils jq yq perl python3 git"
+packages="gcc gfortran make libc6-dev libjansson-dev librandom123-dev libgsl-dev libcunit1-dev lammps liblammps-dev openmpi-bin libopenmpi-dev pkg-config gnuplot-nox valgrind gcovr libxml2-utils jq yq perl python3 git"
 [ "${1:-}" != gate ] || packages="gcc make libc6-dev libjansson-dev libgsl-dev gnuplot-nox"
 
 missing=""

@@ -34,7 +34,7 @@ void candidate_stop_with_us(void)
     sigaction(SIGHUP, &action, NULL);
 }
 
-static double now(void)
+double candidate_now(void)
 {
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);
@@ -59,6 +59,24 @@ static size_t folder_size(const char *path)
     return folder_bytes;
 }
 
+bool candidate_floods(const struct candidate *c, const char *out_dir, const char *log)
+{
+    struct stat said;
+    return folder_size(out_dir) > c->bytes || (stat(log, &said) == 0 && (size_t)said.st_size > c->bytes);
+}
+
+void candidate_limits(const struct candidate *c)
+{
+    const struct rlimit file = { .rlim_cur = c->bytes, .rlim_max = c->bytes }, core = { 0, 0 };
+    setrlimit(RLIMIT_FSIZE, &file);
+    setrlimit(RLIMIT_CORE, &core);
+}
+
+void candidate_running(pid_t group)
+{
+    running = group;
+}
+
 /* In the child: does not return. `exec` in the script makes the candidate itself, not a shell, receive our signals. */
 static void become_candidate(const struct candidate *c, const char *case_dir, const char *out_dir, const char *log)
 {
@@ -68,9 +86,7 @@ static void become_candidate(const struct candidate *c, const char *case_dir, co
     dup2(in, STDIN_FILENO);
     dup2(out, STDOUT_FILENO);
     dup2(out, STDERR_FILENO);
-    const struct rlimit file = { .rlim_cur = c->bytes, .rlim_max = c->bytes }, core = { 0, 0 };
-    setrlimit(RLIMIT_FSIZE, &file);
-    setrlimit(RLIMIT_CORE, &core);
+    candidate_limits(c);
     execl("/bin/sh", "sh", "-c", script, "candidate", case_dir, out_dir, (char *)NULL);
     _exit(127);
 }
@@ -82,13 +98,12 @@ static int watch(const struct candidate *c, pid_t child, const char *out_dir, co
     int status = 0;
     double pause = 2e-4, sized = start;
     while (waitpid(child, &status, WNOHANG) == 0) {
-        const double t = now();
-        struct stat said;
+        const double t = candidate_now();
         if (t - start > c->seconds)
             answer->outcome = CANDIDATE_HUNG;
         if (t - sized > 0.2) {
             sized = t;
-            if (folder_size(out_dir) > c->bytes || (stat(log, &said) == 0 && (size_t)said.st_size > c->bytes))
+            if (candidate_floods(c, out_dir, log))
                 answer->outcome = CANDIDATE_FLOODED;
         }
         if (answer->outcome != CANDIDATE_OK) {
@@ -119,8 +134,9 @@ static void read_tail(const char *log, char *said, size_t room)
     fclose(file);
 }
 
-static void explain(const struct candidate *c, struct candidate_answer *a)
+void candidate_explain(const struct candidate *c, const char *log, struct candidate_answer *a)
 {
+    read_tail(log, a->said, sizeof a->said);
     const char *last = strrchr(a->said, '\n');
     if (last && last[1] == '\0') { /* the last line that says something */
         while (last > a->said && last[-1] != '\n')
@@ -157,7 +173,11 @@ void candidate_run(const struct candidate *c, const char *case_dir, const char *
     char log[PATH_LENGTH + 8];
     snprintf(log, sizeof log, "%s.log", out_dir);
     *answer = (struct candidate_answer){ .outcome = CANDIDATE_OK };
-    const double start = now();
+    if (c->server) {
+        candidate_ask_server(c, case_dir, out_dir, answer);
+        return;
+    }
+    const double start = candidate_now();
     const pid_t child = fork();
     if (child == 0) {
         setpgid(0, 0);
@@ -167,8 +187,7 @@ void candidate_run(const struct candidate *c, const char *case_dir, const char *
     running = child;
     const int status = watch(c, child, out_dir, log, start, answer);
     running = 0;
-    answer->seconds = now() - start;
-    read_tail(log, answer->said, sizeof answer->said);
+    answer->seconds = candidate_now() - start;
     if (answer->outcome == CANDIDATE_OK && WIFSIGNALED(status)) {
         answer->detail = WTERMSIG(status);
         answer->outcome = answer->detail == SIGXFSZ ? CANDIDATE_FLOODED : CANDIDATE_CRASHED;
@@ -176,7 +195,7 @@ void candidate_run(const struct candidate *c, const char *case_dir, const char *
         answer->detail = WEXITSTATUS(status);
         answer->outcome = answer->detail == 77 ? CANDIDATE_UNSUPPORTED : CANDIDATE_FAILED;
     }
-    explain(c, answer);
+    candidate_explain(c, log, answer);
 }
 
 /* The program file behind the first word of the command, as the shell would find it. */

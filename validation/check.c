@@ -7,6 +7,8 @@
  * a real fault that raised the first alarm comes back with p far smaller.
  */
 #include "check.h"
+#include "offline.h"
+#include "precision.h"
 
 #include <fnmatch.h>
 #include <math.h>
@@ -49,6 +51,31 @@ static struct result *append(struct check_run *run, enum judgement judgement, co
         va_end(arguments);                                                                                                  \
     } while (0)
 
+/*
+ * What fails the tolerance of the case has the allowance of the declared precision and level on top. Where that is more than a verdict can stand, what
+ * lies in between is not judged.
+ */
+static void allow_for_precision(const struct check_run *run, struct result *r)
+{
+    double more = run->allowance;
+    if (run->amplification > 0 && r->tolerance < 1e-8)      /* of a run: such a tolerance is rounding of a double times what the run makes of it */
+        more = fmax(more, r->tolerance * run->amplification);
+    r->allowance = more;
+    if (r->error <= r->tolerance + fmin(more, ALLOWANCE_AT_MOST))
+        r->verdict = VERDICT_PASS;
+    else if (r->error <= r->tolerance + more) {
+        char text[WHY_LENGTH];
+        snprintf(text, sizeof text, "not judged: an error of %.2g is within what may be expected (%.2g, %s), but too much for a verdict", r->error, more,
+                 run->allowance_reason);
+        free(r->sentence);
+        r->sentence = copy_text(text);
+        r->verdict = VERDICT_SKIP;
+    } else
+        return;
+    r->tolerance += fmin(more, ALLOWANCE_AT_MOST);
+    result_notes(r, "The tolerance is %.2g wider than that of the case %s.", fmin(more, ALLOWANCE_AT_MOST), run->allowance_reason);
+}
+
 struct result *check_error(struct check_run *run, enum judgement judgement, const char *what, double measured, double expected,
                            double error, double tolerance, const char *sentence, ...)
 {
@@ -57,6 +84,8 @@ struct result *check_error(struct check_run *run, enum judgement judgement, cons
     r->error = error;
     r->tolerance = tolerance;
     r->verdict = error <= tolerance ? VERDICT_PASS : VERDICT_FAIL;
+    if (r->verdict == VERDICT_FAIL && run->allowance > 0)
+        allow_for_precision(run, r);
     return r;
 }
 
@@ -313,7 +342,7 @@ void check_judge(struct check_run *run, const struct check *check, int p_values,
     if (given > run->gate_case->p_values)
         check_error(run, INVARIANT, "number of p-values", given, run->gate_case->p_values, given, run->gate_case->p_values,
                     "the check gives more p-values than its case declares; this is a mistake in the suite");
-    if (!alarm || settled_at_once(run))
+    if (!alarm || settled_at_once(run) || offline_waits(run->candidate))
         return;
     struct results first = run->results;
     run->results = (struct results){ 0 };
@@ -322,7 +351,8 @@ void check_judge(struct check_run *run, const struct check *check, int p_values,
     run->results = first;
     for (size_t k = 0; k < run->results.count; k++)
         if (alarms(&run->results.item[k]))
-            settle(&run->results.item[k], find(&again, run->results.item[k].what), SUITE_ALARM_RATE / p_values);
-    keep_failures(run, &again);
+            settle(&run->results.item[k], offline_waits(run->candidate) ? NULL : find(&again, run->results.item[k].what), SUITE_ALARM_RATE / p_values);
+    if (!offline_waits(run->candidate))
+        keep_failures(run, &again);
     results_free(&again);
 }

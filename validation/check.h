@@ -34,6 +34,7 @@ struct result {
     enum judgement judgement;
     double measured, expected;          /* the numbers for people; NaN where there is no single one */
     double error, tolerance;            /* judged: error <= tolerance; NaN for statistical results */
+    double allowance;                   /* what the tolerance holds beyond that of the case */
     double p;                           /* NaN for deterministic results */
     double first_p;                     /* of the first attempt, where a rerun has replaced p; else the same */
     double resolution, declared;        /* smallest relative fault this sample can see, and the one it must see; NaN: not said */
@@ -56,6 +57,10 @@ struct check_run {
     struct results results;
     double candidate_seconds;           /* wall time spent in the candidate so far */
     const char *keep;                   /* folder for what took long to compute, or null: checks that run for hours go on where they stopped */
+    double allowance;                   /* what the answers so far may be off beyond a tolerance: declared precision, level (precision.h) */
+    double amplification;               /* of roundoff, in runs whose tolerance is itself rounding; 0: none */
+    char allowance_reason[200];
+    bool replaying;                     /* judge the answers that are there once more: nothing is asked (conventions.h) */
 };
 
 struct check { const char *name; void (*run)(struct check_run *run); };
@@ -63,11 +68,13 @@ const struct check *check_find(const char *name);   /* over all families (checks
 
 /* What the candidate is asked; borrowed, nothing is taken over. Null arrays: no such file. */
 struct question {
-    const char *protocol;               /* "forces", "noise", "run" */
+    const char *protocol;               /* "forces", "noise", "friction", "run"; "steps" is for level_b.c */
     json_t *scene;                      /* complete scene; "about" is added if missing */
     const struct state_row *state;      size_t states;   /* rows of states.csv */
     const struct contact_row *contact;  size_t contacts; /* rows of contacts.csv */
-    size_t draws;                       /* for "noise" */
+    size_t draws;                       /* for "noise", "friction" */
+    size_t steps;                       /* for "steps" */
+    bool stress;                        /* for "steps": is it asked for */
     int pause;                          /* for "run": the step after which it stops and goes on from what is on disk; 0: none */
 };
 
@@ -76,6 +83,9 @@ struct question {
  * answer to read: what happened has been recorded (exit 77 as skip, all else as failure) and the check should return.
  */
 bool check_ask(struct check_run *run, const char *name, const struct question *q, char out[PATH_LENGTH]);
+
+/* The same for a question within a question: folder <name>/<part>. No level or physics is looked at. */
+bool check_ask_part(struct check_run *run, const char *name, const char *part, const struct question *q, char out[PATH_LENGTH]);
 
 /* The candidate answered with something unreadable: record a failure with this sentence (file and line are in it). */
 void check_garbage(struct check_run *run, const char *why);

@@ -5,6 +5,7 @@
  */
 #include "calibrate.h"
 #include "coverage.h"
+#include "export.h"
 #include "github.h"
 #include "known.h"
 #include "versions.h"
@@ -24,6 +25,8 @@ static const char help[] =
     "\n"
     "  gate run --candidate COMMAND [options]   ask the cases, print verdicts, write a report\n"
     "  gate list [options]                      the cases that `run` would ask\n"
+    "  gate export DIR [options]                write the questions to a folder, to be answered elsewhere (DIR/README.txt)\n"
+    "  gate judge DIR [options]                 verdicts from the answers in it\n"
     "  gate explain [FLAG]                      a class of mistakes: what it is, what it does, where it was seen, which cases\n"
     "                                           would show it; without FLAG the list of classes\n"
     "  gate calibrate --candidate COMMAND --seeds N --table FILE [options]\n"
@@ -31,7 +34,9 @@ static const char help[] =
     "                                           false verdicts and the spread of p; goes on where FILE ends\n"
     "  gate freeze                              write suite-" GATE_SUITE ".json: what this suite asks from now on, and how strictly\n"
     "\n"
-    "  --candidate COMMAND   called as COMMAND CASE_DIR OUT_DIR (docs/formats.md)\n"
+    "  --candidate COMMAND   called as COMMAND CASE_DIR OUT_DIR (docs/adapter.md)\n"
+    "  --capabilities FILE   what the candidate is (default: <program>.capabilities.json beside it, if there is one)\n"
+    "  --level LEVEL         ask as if the candidate were of this level: A forces, B a few steps, C runs only\n"
     "  --layer LAYER         only this layer, by number or name: 1 pair, 2 noise, 3 single, 4 two-bodies, 5 dilute,\n"
     "                        6 dense, 7 published; several separated by commas\n"
     "  --case NAME           only these cases, separated by commas\n"
@@ -53,7 +58,9 @@ static const char help[] =
     "Exit codes: 0 pass, 1 fail, 2 wrong usage, 3 only inconclusive, 77 nothing supported.\n";
 
 struct options {
-    const char *candidate, *layers, *cases, *needs, *report, *work, *table, *suite, *known, *keep;
+    const char *candidate, *layers, *cases, *needs, *report, *work, *table, *suite, *known, *keep, *capabilities, *level;
+    const char *folder;         /* of export and judge */
+    bool exporting;
     char suite_dir[PATH_LENGTH];
     enum tier tier;
     int jobs, stop_after;
@@ -107,6 +114,10 @@ static int parse_option(struct options *o, const char *name, const char *value)
         return usage("%s needs a value", name);
     if (strcmp(name, "--candidate") == 0)
         o->candidate = value;
+    else if (strcmp(name, "--capabilities") == 0)
+        o->capabilities = value;
+    else if (strcmp(name, "--level") == 0)
+        o->level = value;
     else if (strcmp(name, "--layer") == 0)
         o->layers = value;
     else if (strcmp(name, "--case") == 0)
@@ -242,6 +253,24 @@ static bool write_reports(const struct options *o, struct provenance *p, const s
     return good;
 }
 
+static void quiet(const struct finished_case *done)
+{
+    (void)done;
+}
+
+/* Writes the lists of an exported folder. */
+static bool say_what_waits(const struct options *o, char why[WHY_LENGTH])
+{
+    size_t questions, waiting;
+    if (!offline_list(o->folder, &questions, &waiting, why))
+        return false;
+    if (o->exporting)
+        printf("%zu questions in %s; %s/README.txt says how to answer them\n", questions, o->folder, o->folder);
+    else if (waiting)
+        printf("%zu of %zu questions have no answer yet: sh %s/run.sh ADAPTER, then judge again\n", waiting, questions, o->folder);
+    return true;
+}
+
 /* What is known of the candidate, of its suite, and of the day: the first line. */
 static void fill_provenance(const struct options *o, const struct suite_choice *choice, struct provenance *p)
 {
@@ -271,8 +300,18 @@ static int run_cases(const struct options *o, const struct suite_of_cases *suite
     work = realpath(o->work, NULL); /* absolute: a candidate may change its folder */
     struct run_plan plan = { .gate_case = chosen, .count = count, .work = work, .jobs = o->jobs, .p_values = suite->p_values,
                              .seed_offset = o->seed_offset, .stop_after = o->stop_after, .keep = o->keep, .known = &known };
-    plan.candidate = (struct candidate){ .command = o->candidate, .bytes = (size_t)1 << 30 };
-    if (!candidate_hash(&plan.candidate, p.candidate_hash)) {
+    struct capabilities capabilities;
+    if (!capabilities_choose(o->capabilities, o->candidate, o->level, &capabilities, why)) {
+        free(work);
+        known_free(&known);
+        return usage("%s", why);
+    }
+    plan.candidate = (struct candidate){ .command = o->candidate ? o->candidate : o->folder, .bytes = (size_t)1 << 30, .capabilities = &capabilities };
+    plan.offline = o->folder;
+    p.candidate = plan.candidate.command;
+    p.level = level_letter(capabilities.level);
+    p.precision = capabilities.precision;
+    if (!candidate_hash(&plan.candidate, p.candidate_hash) && !o->folder) {
         free(work);
         known_free(&known);
         return usage("there is no program '%.*s' to run as the candidate", (int)strcspn(o->candidate, " \t"), o->candidate);
@@ -287,21 +326,22 @@ static int run_cases(const struct options *o, const struct suite_of_cases *suite
     say_not_tested(o, suite, count, p.not_tested, sizeof p.not_tested);
 
     struct finished_case *done = calloc(count, sizeof *done);
-    struct timespec start, end;
-    clock_gettime(CLOCK_MONOTONIC, &start);
-    terminal_open(&p);
-    count = run_all(&plan, done, terminal_case);
-    clock_gettime(CLOCK_MONOTONIC, &end);
-    p.seconds = (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
+    const double start = candidate_now();
+    if (!o->exporting)
+        terminal_open(&p);
+    count = run_all(&plan, done, o->exporting ? quiet : terminal_case);
+    p.seconds = candidate_now() - start;
 
-    const bool written = write_reports(o, &p, suite, done, count, why);
-    const int code = written ? report_exit_code(report_tally(done, count)) : EXIT_USAGE;
+    const bool written = o->exporting || write_reports(o, &p, suite, done, count, why);
+    const bool listed = !o->folder || say_what_waits(o, why);
+    const int code = !written ? EXIT_USAGE : o->exporting ? 0 : report_exit_code(report_tally(done, count));
     for (size_t k = 0; k < count; k++)
         finished_free(&done[k]);
     free(done);
     free(work);
     known_free(&known);
-    return code;
+    capabilities_free(&capabilities);
+    return listed ? code : usage("%s", why);
 }
 
 /* One flag of flags.json, or all their names. */
@@ -379,25 +419,47 @@ int main(int argc, char **argv)
         return fputs(help, stdout) < 0;
     if (strcmp(verb, "--version") == 0)
         return printf("gate %s, suite %s\n", GATE_VERSION, GATE_SUITE) < 0;
-    if (strcmp(verb, "run") != 0 && strcmp(verb, "list") != 0 && strcmp(verb, "calibrate") != 0
-        && strcmp(verb, "explain") != 0 && strcmp(verb, "freeze") != 0)
-        return usage("%s'%s'; see gate --help", *verb ? "unknown command " : "say `run`, `list`, `explain`, `calibrate` or `freeze`, not ", verb);
+    if (strcmp(verb, "run") != 0 && strcmp(verb, "list") != 0 && strcmp(verb, "calibrate") != 0 && strcmp(verb, "explain") != 0
+        && strcmp(verb, "freeze") != 0 && strcmp(verb, "export") != 0 && strcmp(verb, "judge") != 0)
+        return usage("%s'%s'; see gate --help", *verb ? "unknown command " : "say `run`, `list`, `explain`, `export`, `judge`, `calibrate` or `freeze`, not ", verb);
 
     struct options o = { .report = "build/report", .work = "build/cases", .jobs = 1,
                          .calibrating = strcmp(verb, "calibrate") == 0 };
     find_suite(o.suite_dir);
     if (strcmp(verb, "explain") == 0)
         return argc > 3 ? usage("explain takes one flag") : explain(argc == 3 ? argv[2] : NULL, o.suite_dir);
-    for (int k = 2; k < argc; k += 2) {
+    const bool offline = strcmp(verb, "export") == 0 || strcmp(verb, "judge") == 0;
+    o.exporting = strcmp(verb, "export") == 0;
+    o.folder = offline && argc > 2 && argv[2][0] != '-' ? argv[2] : NULL;
+    for (size_t n = o.folder ? strlen(o.folder) : 0; n > 1 && argv[2][n - 1] == '/'; n--)
+        argv[2][n - 1] = '\0';
+    if (offline && !o.folder)
+        return usage("%s needs a folder", verb);
+    json_t *kept = NULL;        /* options with which the folder was exported */
+    char why[WHY_LENGTH];
+    if (strcmp(verb, "judge") == 0 && !export_options(o.folder, &kept, why))
+        return usage("%s", why);
+    const char *key;
+    json_t *value;
+    int code = 0;
+    json_object_foreach(kept, key, value)
+        code = code ? code : parse_option(&o, key, json_string_value(value));
+    for (int k = offline ? 3 : 2; k < argc && code == 0; k += 2) {
         if (strcmp(argv[k], "--help") == 0)
             return fputs(help, stdout) < 0;
-        const int code = parse_option(&o, argv[k], k + 1 < argc ? argv[k + 1] : NULL);
-        if (code != 0)
-            return code;
+        if (strcmp(verb, "judge") == 0 && export_keeps(argv[k]))
+            return usage("%s was settled by `gate export`; export anew to choose otherwise", argv[k]);
+        code = parse_option(&o, argv[k], k + 1 < argc ? argv[k + 1] : NULL);
     }
-    if (strcmp(verb, "list") != 0 && strcmp(verb, "freeze") != 0 && !o.candidate)
+    if (code == 0 && o.exporting && !export_begin(o.folder, argc - 3, argv + 3, why))
+        return usage("%s", why);
+    if (code != 0)
+        return code;
+    if (!offline && strcmp(verb, "list") != 0 && strcmp(verb, "freeze") != 0 && !o.candidate)
         return usage("%s needs --candidate COMMAND", verb);
     if (o.calibrating && (!o.seeds || !o.table))
         return usage("calibrate needs --seeds N and --table FILE");
-    return with_suite(verb, &o);
+    code = with_suite(verb, &o);
+    json_decref(kept);
+    return code;
 }

@@ -2,6 +2,7 @@
  * Worker processes. A worker runs one case and leaves results.json in the case's work folder; the gate reads it when the
  * worker has ended. A worker that dies without it has found a mistake in the gate, and that is a failed case too.
  */
+#include "judge.h"
 #include "run.h"
 
 #include <math.h>
@@ -13,7 +14,7 @@
 #include <time.h>
 #include <unistd.h>
 
-struct worker { pid_t pid; size_t at; double start; };
+struct worker { pid_t pid; size_t at; double start; struct candidate_server server; };
 
 static volatile sig_atomic_t interrupted;
 
@@ -22,22 +23,18 @@ static void interrupt(int signal_number)
     interrupted = signal_number;
 }
 
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 /* In the worker process. */
-static int work_on(const struct run_plan *plan, const struct gate_case *c, const char *work)
+static int work_on(const struct run_plan *plan, const struct gate_case *c, const char *work, struct candidate_server *server)
 {
     candidate_stop_with_us();
     struct candidate candidate = plan->candidate;
     candidate.seconds = c->seconds;
+    candidate.server = server->pid ? server : NULL;
     struct check_run run = { .gate_case = c, .candidate = &candidate, .keep = plan->keep };
     snprintf(run.work, sizeof run.work, "%s", work);
-    check_judge(&run, check_find(c->check), plan->p_values, plan->seed_offset);
+    judge_case(&run, check_find(c->check), plan->p_values, plan->seed_offset, plan->offline);
+    if (server->pid && server->owner == getpid())
+        candidate_server_stop(server);
     char path[PATH_LENGTH];
     path_join(path, work, "results.json");
     json_t *json = json_pack("{so sf}", "results", results_to_json(&run.results), "candidate_seconds", run.candidate_seconds);
@@ -47,7 +44,19 @@ static int work_on(const struct run_plan *plan, const struct gate_case *c, const
     return bad != 0;
 }
 
-static pid_t start_worker(const struct run_plan *plan, size_t at, struct finished_case *done)
+/* A candidate with run-all is started once per worker; one that has died is started anew. */
+static void keep_server(const struct run_plan *plan, struct candidate_server *server, size_t w)
+{
+    char name[32], log[PATH_LENGTH];
+    if (plan->offline || !plan->candidate.capabilities || !plan->candidate.capabilities->run_all || candidate_server_alive(server))
+        return;
+    snprintf(name, sizeof name, "run-all-%zu.log", w + 1);
+    path_join(log, plan->work, name);
+    candidate_server_stop(server);
+    candidate_server_start(server, &plan->candidate, log);
+}
+
+static pid_t start_worker(const struct run_plan *plan, size_t at, struct finished_case *done, struct candidate_server *server)
 {
     char why[WHY_LENGTH];
     *done = (struct finished_case){ .gate_case = plan->gate_case[at] };
@@ -56,7 +65,7 @@ static pid_t start_worker(const struct run_plan *plan, size_t at, struct finishe
     fflush(stdout);
     const pid_t pid = fork();
     if (pid == 0)
-        _exit(folder_make(done->work, why) ? work_on(plan, plan->gate_case[at], done->work) : 1);
+        _exit(folder_make(done->work, why) ? work_on(plan, plan->gate_case[at], done->work, server) : 1);
     return pid;
 }
 
@@ -82,7 +91,7 @@ static void show_progress(const struct worker *workers, int jobs, const struct f
 {
     char text[400] = "";
     for (int w = 0; w < jobs; w++) {
-        const double elapsed = now() - workers[w].start;
+        const double elapsed = candidate_now() - workers[w].start;
         if (workers[w].pid == 0 || elapsed < 1)
             continue;
         char path[PATH_LENGTH], line[80] = "";
@@ -101,11 +110,14 @@ static void show_progress(const struct worker *workers, int jobs, const struct f
     fflush(stdout);
 }
 
-static void stop_all(const struct worker *workers, int jobs)
+static void stop_all(struct worker *workers, int jobs)
 {
-    for (int w = 0; w < jobs; w++)
+    for (int w = 0; w < jobs; w++) {
         if (workers[w].pid > 0)
             kill(workers[w].pid, SIGTERM);
+        if (workers[w].server.pid)
+            candidate_server_stop(&workers[w].server);
+    }
     while (wait(NULL) > 0)
         ;
 }
@@ -134,7 +146,7 @@ size_t run_all(const struct run_plan *plan, struct finished_case *done, void (*c
     bool *ended = calloc(plan->count + 1, sizeof *ended);
     size_t next = 0, finished = 0;
     int red = 0;
-    double shown = now();
+    double shown = candidate_now();
     watch_for_interrupts();
     while (finished < plan->count && (!plan->stop_after || red < plan->stop_after)) {
         for (int w = 0; w < plan->jobs; w++) {
@@ -142,9 +154,11 @@ size_t run_all(const struct run_plan *plan, struct finished_case *done, void (*c
             if (workers[w].pid > 0 && waitpid(workers[w].pid, &status, WNOHANG) == workers[w].pid) {
                 struct finished_case *d = &done[workers[w].at];
                 workers[w].pid = 0;
+                if (status != 0 && workers[w].server.pid)
+                    candidate_server_stop(&workers[w].server);      /* it may be in the middle of an answer */
                 collect(d, status);
                 known_settle(plan->known, d);
-                d->seconds = now() - workers[w].start;
+                d->seconds = candidate_now() - workers[w].start;
                 if (terminal)
                     printf("\r\033[K");
                 completed(d);
@@ -153,8 +167,10 @@ size_t run_all(const struct run_plan *plan, struct finished_case *done, void (*c
                 red += d->verdict == VERDICT_FAIL || d->verdict == VERDICT_INCONCLUSIVE;
             }
             if (workers[w].pid == 0 && next < plan->count) {
-                workers[w] = (struct worker){ .at = next, .start = now() };
-                workers[w].pid = start_worker(plan, next, &done[next]);
+                workers[w].at = next;
+                workers[w].start = candidate_now();
+                keep_server(plan, &workers[w].server, (size_t)w);
+                workers[w].pid = start_worker(plan, next, &done[next], &workers[w].server);
                 next++;
             }
         }
@@ -163,13 +179,13 @@ size_t run_all(const struct run_plan *plan, struct finished_case *done, void (*c
             fprintf(stderr, "\ngate: interrupted\n");
             exit(130);
         }
-        if (terminal && now() - shown > 0.5) {
+        if (terminal && candidate_now() - shown > 0.5) {
             show_progress(workers, plan->jobs, done);
-            shown = now();
+            shown = candidate_now();
         }
         nanosleep(&(struct timespec){ .tv_nsec = 2000000 }, NULL);
     }
-    stop_all(workers, plan->jobs);          /* there are some only where red cases ended the run */
+    stop_all(workers, plan->jobs);          /* servers, and workers where red cases ended the run */
     finished = keep_finished(done, ended, plan->count);
     free(workers);
     free(ended);

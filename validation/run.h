@@ -15,6 +15,7 @@ struct run_plan {
     int stop_after;                     /* the run ends once so many cases are red; 0: it goes through all */
     const char *keep;                   /* check.h */
     const struct known_list *known;     /* accepted failures; null: none */
+    const char *offline;                /* the folder of exported questions, or null: ask the candidate */
 };
 
 /* Fills done[] in the order of the plan, calls `completed` as each case ends, and returns how many ended. */

@@ -26,7 +26,8 @@ void audit_see(double theory, quad audit, double scale, const char *where);
 void audit_see_list(const double *theory, const quad *audit, int count, double scale, const char *where);
 /* A failure that is no difference of two numbers. */
 void audit_fault(const char *format, ...) __attribute__((format(printf, 1, 2)));
-/* Closes the last quantity, prints the summary; 0, or 1 where a bar is not met. `header`: theory.h, whose functions should all be covered. */
+/* Closes the last quantity, prints the summary; 0, or 1 where a bar is not met. `header`: theory.h, whose functions should all be covered;
+ * null: do not ask. */
 int audit_close(const char *header);
 
 /* --- small things --- */
@@ -83,6 +84,7 @@ void audit_vectors(const char *folder);
 void audit_pairs(void);
 void audit_spheres(void);
 void audit_collisions(void);
+void audit_impacts(void);
 void audit_motion(void);
 void audit_crowds(void);
 

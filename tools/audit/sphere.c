@@ -293,6 +293,15 @@ static void audit_driven(void)
                    "");
     for (int k = 0; k < 5; k++)
         audit_see(said[k], travelled[k], 1.0, "");
+    audit_quantity("flow in stages: way without a turn", "primitive of the rate", 1e-12, "Simpson is exact to the fourth power of a piece where the rate is smooth", "");
+    static const struct theory_stage forth = { 2.3, 1, { { 0, 1, 0.7, 0.1, 0.3, 2.1, 0.4 } } };
+    const struct theory_rate *r = &forth.shear[0];
+    for (int k = 1; k <= 3; k++) {
+        const double t = 0.7 * k;
+        double G[3][3], way_said;
+        theory_driven_flow(&forth, 1, t, G, &way_said);
+        audit_see(way_said, r->mean * (quad)t + r->slope * (quad)t * t / 2 + r->amplitude / (quad)r->frequency * (cosq(r->phase) - cosq((quad)r->frequency * t + r->phase)), 1.0, "");
+    }
 }
 
 void audit_spheres(void)

@@ -31,7 +31,7 @@ class Stock:
 
     # ---- reading a case, and refusing what has no equivalent ----
 
-    def __init__(self, folder, own=None):
+    def __init__(self, folder, own=None, newton=None):
         self.case = json.load(open(os.path.join(folder, "case.json")))
         self.scene = scene = json.load(open(os.path.join(folder, self.case["scene"])))
         self.protocol, self.forces, self.own = self.case["protocol"], scene.get("forces", {}), own
@@ -46,6 +46,7 @@ class Stock:
             only(species, "the species' key", "name radius density")
         self.radius = [s["radius"] for s in scene["species"]]
         self.mass = [4 / 3 * PI * s["density"] * s["radius"] ** 3 for s in scene["species"]]
+        self.newton = newton or ("on" if own == "equal" else "off")     # off: brownian draws anew on each side of a face; on: lubricate/poly refuses
         self.seed = (scene.get("seed", 1) + 104729 * scene.get("realisation", 0)) % 900000000 + 1
         self.eta, self.kT = scene.get("fluid", {}).get("viscosity"), scene.get("fluid", {}).get("kT", 0)
         self.read_box()
@@ -185,8 +186,8 @@ class Stock:
     def physics(self, state, forces):
         """The deck from the data file to the fixes, with only these forces."""
         styles = self.pair_styles(forces) or [(f"zero {2 * max(self.radius)!r}", ["* *"], "no pair force")]
-        hybrid, newton = len(styles) > 1, "on" if self.own == "equal" else "off"    # brownian draws anew on each side of a face when off; lubricate/poly refuses on
-        lines = ["clear\nunits lj\natom_style sphere\nboundary p p p\nnewton " + newton + "\ncomm_modify vel yes       # ghosts know velocities: image velocity = rate x cell\nbox tilt large",
+        hybrid = len(styles) > 1
+        lines = ["clear\nunits lj\natom_style sphere\nboundary p p p\nnewton " + self.newton + "\ncomm_modify vel yes       # ghosts know velocities: image velocity = rate x cell\nbox tilt large",
                  f"read_data lammps-{state}.data"]
         lines += ["# " + comment for _, _, comment in styles]
         lines.append("pair_style " + ("hybrid/overlay " if hybrid else "") + " ".join(s for s, _, _ in styles))

@@ -39,6 +39,7 @@ struct point {
     const json_t *json;
     const char *name;
     double x, phi, core_seconds[2];
+    int count;                                          /* realisations */
     double value[2][QUANTITIES][MOST_REALISATIONS];    /* candidate, reference */
 };
 
@@ -131,12 +132,12 @@ static bool run_point(struct check_run *run, struct point *p, int k, struct kept
 /* --- judging --- */
 
 /* Mean over realisations of the candidate's less the reference's, and its standard error. */
-static double difference_of(const struct point *p, int q, int count, double *standard_error)
+static double difference_of(const struct point *p, int q, double *standard_error)
 {
     double d[MOST_REALISATIONS];
-    for (int k = 0; k < count; k++)
+    for (int k = 0; k < p->count; k++)
         d[k] = p->value[0][q][k] - p->value[1][q][k];
-    return mean_of(d, count, standard_error);
+    return mean_of(d, p->count, standard_error);
 }
 
 static double margin_of(const struct check_run *run, const struct point *p, int q, double reference, double viscosity)
@@ -156,8 +157,9 @@ static double margin_of(const struct check_run *run, const struct point *p, int 
     }
 }
 
-static void judge(struct check_run *run, const struct point *p, bool alone, int count)
+static void judge(struct check_run *run, const struct point *p, bool alone)
 {
+    const int count = p->count;
     double error, own_error, reference_error;
     char what[160];
     const double viscosity = mean_of(p->value[1][VISCOSITY], count, &error);
@@ -165,7 +167,7 @@ static void judge(struct check_run *run, const struct point *p, bool alone, int 
         const double own = mean_of(p->value[0][q], count, &own_error), reference = mean_of(p->value[1][q], count, &reference_error);
         if (q == DRAG || (own == 0 && reference == 0))
             continue;
-        const double difference = difference_of(p, q, count, &error), margin = margin_of(run, p, q, reference, viscosity);
+        const double difference = difference_of(p, q, &error), margin = margin_of(run, p, q, reference, viscosity);
         snprintf(what, sizeof what, "%s%s%s", alone ? "" : p->name, alone ? "" : ": ", quantity[q].name);
         struct result *r = check_interval(run, MODEL, what, own, error, reference, margin,
                                           "%s is %.4g +- %.2g in the candidate and %.4g +- %.2g in LAMMPS, from the same %d starts; "
@@ -183,26 +185,27 @@ static void judge(struct check_run *run, const struct point *p, bool alone, int 
 
 /* --- table and picture --- */
 
-static void write_table(const struct check_run *run, const char *path, const struct point *point, size_t points, int count)
+static void write_table(const struct check_run *run, const char *path, const struct point *point, size_t points)
 {
     FILE *f = fopen(path, "w");
     if (!f)
         return;
-    fprintf(f, "# %s\n# mean and standard error over %d realisations; `difference`: candidate less reference, of pairs that start alike; `margin`: of the verdict\n"
+    fprintf(f, "# %s\n# mean and standard error over the realisations; `difference`: candidate less reference, of pairs that start alike; `margin`: of the verdict\n"
                "# viscosities and stresses in units of viscosity x rate; temperatures in kT, without noise in viscosity x rate x radius^3\n"
                "# gate %s, seed %u; candidate: %s; reference: %s\n",
-            run->gate_case->about, count, GATE_VERSION, run->seed, run->candidate->command, dense_reference());
-    fprintf(f, "point,phi,x,quantity,candidate,candidate_error,reference,reference_error,difference,difference_error,margin,core_seconds,reference_core_seconds\n");
+            run->gate_case->about, GATE_VERSION, run->seed, run->candidate->command, dense_reference());
+    fprintf(f, "point,phi,x,realisations,quantity,candidate,candidate_error,reference,reference_error,difference,difference_error,margin,core_seconds,reference_core_seconds\n");
     for (size_t n = 0; n < points; n++) {
         const struct point *p = &point[n];
+        const int count = p->count;
         double error[3];
         if (json_object_get(p->json, "dear"))
             continue;
         const double viscosity = mean_of(p->value[1][VISCOSITY], count, error);
         for (int q = 0; q < QUANTITIES; q++) {
             const double own = mean_of(p->value[0][q], count, &error[0]), reference = mean_of(p->value[1][q], count, &error[1]);
-            const double difference = difference_of(p, q, count, &error[2]);
-            fprintf(f, "%s,%g,%g,%s,%.6g,%.2g,%.6g,%.2g,%.2g,%.2g,%.2g,%.1f,%.1f\n", p->name, p->phi, p->x, quantity[q].column, own, error[0], reference, error[1],
+            const double difference = difference_of(p, q, &error[2]);
+            fprintf(f, "%s,%g,%g,%d,%s,%.6g,%.2g,%.6g,%.2g,%.2g,%.2g,%.2g,%.1f,%.1f\n", p->name, p->phi, p->x, p->count, quantity[q].column, own, error[0], reference, error[1],
                     difference, error[2], q == DRAG ? 1e-9 * own : margin_of(run, p, q, reference, viscosity), p->core_seconds[0], p->core_seconds[1]);
         }
     }
@@ -244,7 +247,6 @@ void dense_viscosities(struct check_run *run)
 {
     const json_t *list = json_object_get(run->gate_case->parameters, "points"), *json;
     const size_t points = json_array_size(list);
-    const int count = GSL_MIN((int)scene_number(run->gate_case->parameters, "realisations", 5) * run->samples, MOST_REALISATIONS);
     struct point *point = calloc(points, sizeof *point);
     struct kept kept;
     char path[PATH_LENGTH], names[512];
@@ -255,6 +257,7 @@ void dense_viscosities(struct check_run *run)
         if (!good)
             break;
         point[n] = (struct point){ .json = json, .name = json_string_value(json_object_get(json, "name")), .x = scene_number(json, "x", NAN) };
+        const int count = point[n].count = GSL_MIN((int)point_number(run, json, "realisations", 5) * run->samples, MOST_REALISATIONS);
         const char *dear = json_string_value(json_object_get(json, "dear"));
         for (int k = 0; good && !dear && k < count; k++) {
             check_progress(run, "%s, realisation %d of %d", point[n].name, k + 1, count);
@@ -263,17 +266,17 @@ void dense_viscosities(struct check_run *run)
         if (good && dear)
             check_skip(run, point[n].name, "%s: not run, %s", point[n].name, dear);
         else if (good)
-            judge(run, &point[n], points == 1, count);
+            judge(run, &point[n], points == 1);
     }
     if (good) {
         path_join(path, run->work, "table.csv");
-        write_table(run, path, point, points, count);
+        write_table(run, path, point, points);
         draw(run);
         if (run->keep) {
             char file[160];
             snprintf(file, sizeof file, "%s-table.csv", run->gate_case->name);
             path_join(path, run->keep, file);
-            write_table(run, path, point, points, count);
+            write_table(run, path, point, points);
         }
     }
     if (point)

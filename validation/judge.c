@@ -1,0 +1,100 @@
+/*
+ * See judge.h. A convention is found by judging the same answers once more, with a scene that says otherwise: if everything then agrees, the
+ * candidate has made no mistake but another choice.
+ */
+#include "judge.h"
+
+#include "offline.h"
+#include "precision.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const struct { const char *key, *path, *value[2]; } open_conventions[] = {
+    { "lever", "forces.contact.lever", { "radius", "contact" } },
+    { "rotation_correction", "forces.lubrication.rotation_correction", { "none", "exact" } },
+};
+
+/* Whether the answers that are there agree with this value in the scene. */
+static bool agrees_with(const struct check_run *run, const struct check *check, const char *path, const char *value)
+{
+    struct gate_case other = *run->gate_case;
+    struct check_run again = *run;
+    other.scene = json_deep_copy(run->gate_case->scene);
+    scene_set(other.scene, path, json_string(value));
+    again.gate_case = &other;
+    again.results = (struct results){ 0 };
+    again.replaying = true;
+    check->run(&again);
+    const bool good = results_verdict(&again.results) == VERDICT_PASS;
+    results_free(&again.results);
+    json_decref(other.scene);
+    return good;
+}
+
+static void name_convention(struct check_run *run, const char *key, const char *asked, const char *followed)
+{
+    const struct capabilities *c = run->candidate->capabilities;
+    const bool open = c && c->given && !json_object_get(c->model, key);
+    for (size_t k = 0; k < run->results.count; k++) {
+        struct result *r = &run->results.item[k];
+        char text[3 * WHY_LENGTH];
+        if (r->verdict != VERDICT_FAIL)
+            continue;
+        snprintf(text, sizeof text, "everything agrees with %s \"%s\" where the scene asks for \"%s\": another convention, no error in itself; a candidate that "
+                 "follows it declares \"model\": { \"%s\": \"%s\" } (docs/adapter.md). Here: %s", key, followed, asked, key, followed, r->sentence);
+        free(r->sentence);
+        r->sentence = strdup(text);
+        if (open)
+            r->verdict = VERDICT_SKIP;
+    }
+}
+
+static void look_for_conventions(struct check_run *run, const struct check *check)
+{
+    if (run->attempt != 1 || results_verdict(&run->results) != VERDICT_FAIL)
+        return;
+    for (size_t k = 0; k < sizeof open_conventions / sizeof *open_conventions; k++) {
+        const char *asked = json_string_value(scene_get(run->gate_case->scene, open_conventions[k].path));
+        if (!asked)
+            continue;
+        const char *other = open_conventions[k].value[strcmp(asked, open_conventions[k].value[0]) == 0];
+        if (agrees_with(run, check, open_conventions[k].path, other)) {
+            name_convention(run, open_conventions[k].key, asked, other);
+            return;
+        }
+    }
+}
+
+static bool has_needs(struct check_run *run)
+{
+    size_t k;
+    json_t *word;
+    json_array_foreach(run->gate_case->needs, k, word)
+        if (!capabilities_list(run->candidate->capabilities, json_string_value(word))) {
+            check_skip(run, "capabilities", "needs \"%s\", which the candidate does not declare", json_string_value(word));
+            return false;
+        }
+    return true;
+}
+
+void judge_case(struct check_run *run, const struct check *check, int p_values, unsigned seed_offset, const char *offline)
+{
+    const struct gate_case *c = run->gate_case;
+    struct gate_case adapted = *c;
+    if (!has_needs(run))
+        return;
+    adapted.scene = json_deep_copy(c->scene);
+    capabilities_into_scene(run->candidate->capabilities, adapted.scene);
+    adapted.parameters = precision_parameters(run->candidate->capabilities, c->parameters, adapted.scene);
+    run->gate_case = &adapted;
+    if (offline)
+        offline_judge(run, check, p_values, seed_offset, offline);
+    else
+        check_judge(run, check, p_values, seed_offset);
+    look_for_conventions(run, check);
+    run->gate_case = c;
+    json_decref(adapted.scene);
+    json_decref(adapted.parameters);
+}
