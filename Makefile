@@ -56,6 +56,9 @@ $B/obj/validation/%.o: validation/%.c
 	@mkdir -p $(@D)
 	$(CC) $(BASE) $(CFLAGS) -DGATE_VERSION='"$(VERSION) ($(COMMIT))"' -Ivalidation -c $< -o $@
 
+# Half of the time of the statistical checks is spent in sums over draws: -O3 makes loops out of them that run several at a time.
+$B/obj/validation/statistics.o: CFLAGS += -O3
+
 $B/obj/tests/%.o: tests/%.c
 	@mkdir -p $(@D)
 	$(CC) $(BASE) $(CFLAGS) -Isolver -Ivalidation -Ivalidation/theory -Itests -Itools/engine -Itools/golden -c $< -o $@
@@ -175,7 +178,6 @@ engine-cost: all ## a step of shear-lammps against one of shear, and on 2 ranks 
 second-opinion: ## LAMMPS's lubrication and noise styles, coefficient by coefficient (docs/lammps.md)
 	@python3 tools/lammps/coefficients.py
 
-<<<<<<< HEAD
 ci-files: $B/shear ## run tools/ci/*.yml as GitHub and GitLab would, with a right and a wrong candidate
 	@tools/ci/check.sh $B
 
@@ -191,10 +193,9 @@ audit: ## golden vectors and closed forms of the gate, recomputed in quadruple p
 
 verdicts: ## docs/verdicts.md against the cases and the results of the last make validate
 	@python3 tools/docs/verdicts.py --run
-=======
+
 findings: all ## what is wrong in stock LAMMPS: the smallest decks, and the gate's own words, beside docs/findings.md
 	@B=$B python3 tools/lammps/findings.py
->>>>>>> lammps
 
 work-precision: all ## seconds for 1 % of the pairs near contact, by integrator and step (about 5 minutes; keeps finished rows)
 	@tools/work-precision.sh $B
@@ -205,11 +206,6 @@ help: ## this list
 clean: ## remove build/
 	rm -rf $B
 
-<<<<<<< HEAD
 .PHONY: all setup validate test lines coverage sanitize memcheck adapters scenes faults calibrate bench scaling golden engine engine-cost second-opinion ci-files \
-	suite-manifest vectors audit verdicts work-precision help clean FORCE
+	suite-manifest findings vectors audit verdicts work-precision help clean FORCE
 -include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS) $(ENGINE) $(GOLDEN) $(AUDIT) tools/compare/checkpoints.c))
-=======
-.PHONY: all setup validate test lines coverage sanitize memcheck scenes faults calibrate bench scaling engine engine-cost second-opinion findings work-precision help clean FORCE
--include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS) $(ENGINE) tools/compare/checkpoints.c))
->>>>>>> lammps

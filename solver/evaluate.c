@@ -235,6 +235,27 @@ static bool evaluate_friction(struct simulation *sim, const struct state_file *s
     return !error_raised(e);
 }
 
+/*
+ * A run. With `pause` everything is dropped after that step but what is on disk, and the run goes on from the checkpoint: `pause` asks
+ * whether a run that was stopped is the run that was not.
+ */
+static bool evaluate_run(struct simulation *sim, const char *scene, const char *out_folder, int64_t pause, struct error *e)
+{
+    const struct scene_options resumed = { .resume = true };
+    if (pause > 0) {
+        sim->last_step = pause;
+        if (!sim->checkpoint.every)
+            return error_raise(e, ERROR_INPUT, "case.json: pause needs output.checkpoint in the scene");
+        if (!simulation_begin(sim, e) || !simulation_run(sim, e) || !simulation_close(sim, e))
+            return false;
+        memset(sim, 0, sizeof *sim);
+        if (!scene_build(scene, &resumed, sim, e) || !destination_make(&sim->destination, out_folder, e))
+            return false;
+        sim->destination.resuming = true;
+    }
+    return simulation_begin(sim, e) && simulation_run(sim, e);
+}
+
 /* Of the image where the particle was put: some have been wrapped into the cell. */
 static void write_velocities(FILE *out, const struct suspension *s)
 {
@@ -303,6 +324,7 @@ bool evaluate_case(const char *case_folder, const char *out_folder, struct error
     if (!settings_load(&c, path, NULL, 0, e))
         return false;
     const int protocol = settings_choice(&c, "protocol", protocols, e);
+    const int64_t pause = protocol == RUN && settings_has(&c, "pause") ? settings_whole(&c, "pause", 1, INT64_MAX, e) : 0;
     const long draws = protocol == DRAWS || protocol == IMPULSES ? (long)settings_whole(&c, "draws", 1, 1000000000, e) : 0;
     const int64_t steps = protocol == STEPS ? settings_whole(&c, "steps", 1, 1000000000, e) : 0;
     const bool stress = protocol == STEPS && settings_has(&c, "stress") && settings_flag(&c, "stress", e);
@@ -332,8 +354,8 @@ bool evaluate_case(const char *case_folder, const char *out_folder, struct error
             evaluate_steps(sim, states, &contacts, steps, stress, e);
         else if (protocol == IMPULSES)
             evaluate_friction(sim, states, draws, e);
-        else if (simulation_begin(sim, e))
-            simulation_run(sim, e);
+        else
+            evaluate_run(sim, scene, out_folder, pause, e);
     }
     if (sim)
         simulation_close(sim, e);

@@ -1,45 +1,118 @@
 #!/bin/sh
-# Puts each fault of validation/faults/faults.json into a copy of the solver, builds it, and lets the fast tier judge it, cheap
-# layers first, until one fails. Writes build/faults.txt: verdict, seconds, layer and case, what was said. `make faults [ONLY=word] [FROM=number]`.
-# Fails if a fault passes, or an equivalent change does not.
+# Puts each fault of validation/faults/faults.json into a copy of the solver, builds it, and lets the fast tier judge it, quick cases first,
+# until one fails. Fails if a fault passes, or an equivalent change does not.
+#
+#     make faults [ONLY=word] [JOBS=2] [LEVEL=A]
+#
+# Seconds are those of one core, of the gate and the candidate. What was judged is kept in build/faults/ and not judged again until the solver, the suite or the entry changes. The table of all entries
+# is docs/measured/faults.csv; levels that were not run keep the columns that they had.
 set -eu
 cd "$(dirname "$0")/.."
 list=validation/faults/faults.json
-table=build/faults.txt
-count=$(jq '.faults | length' $list)
-: >$table
-missed=0 tried=0
-k=$((${FROM:-0} - 1))
-while [ $((k += 1)) -lt "$count" ]; do
-    name=$(jq -r ".faults[$k].name" $list)
-    case $name in *"${ONLY:-}"*) ;; *) continue ;; esac
-    class=$(jq -r ".faults[$k].class" $list)
-    work=build/faults/$k
+table=docs/measured/faults.csv
+level=${LEVEL:-A}
+jobs=${JOBS:-$(nproc)}
+kept=build/faults/$level
+
+hash_of() { sha1sum | cut -c1-16; }
+sources() { find solver validation -name '*.[ch]' -o -path 'validation/cases/*' -name case.json | LC_ALL=C sort | xargs cat Makefile | hash_of; }
+# Cases whose time on the right solver is within two bounds, separated by commas.
+cases_between() { jq -r --argjson a "$1" --argjson b "$2" '[to_entries[] | select(.value >= $a and .value < $b) | .key] | join(",")' "$kept/reference.json"; }
+
+# run PROGRAM WORK [options of the gate]: exit code of the gate; what it prints is in WORK/gate.txt
+run() {
+    program=$1 work=$2
+    shift 2
+    [ "$level" = A ] || set -- --level "$level" "$@"
+    code=0
+    build/gate run --candidate "$program --evaluate" --work "$work/cases" --report "$work/report" "$@" >"$work/gate.txt" 2>&1 || code=$?
+    case $code in 0 | 1 | 3 | 77) ;; *) echo "faults: the gate itself ended with $code" >&2; cat "$work/gate.txt" >&2; exit 255 ;; esac
+}
+
+# The right solver must pass; how long its cases take says in which order they are asked.
+reference() {
+    mkdir -p "$kept"
+    [ "$(cat "$kept/reference" 2>/dev/null)" = "$SOURCES" ] && return
+    echo "faults: the right solver first"
+    run build/shear "$kept" --jobs "$(nproc)"
+    [ $code = 0 ] || { echo "faults: the right solver is red"; cat "$kept/gate.txt"; exit 1; }
+    awk '/ pass .*[0-9]$/ { print $2, $NF }' "$kept/gate.txt" | jq -Rn '[inputs / " " | { (.[0]): (.[1] | tonumber) }] | add' >"$kept/reference.json"
+    rm -rf "$kept/cases" "$kept/report"
+    echo "$SOURCES" >"$kept/reference"
+}
+
+# One line of JSON about entry K. The verdict is that of the first case that is red.
+judge() {
+    entry=$(jq -c ".faults[$1]" $list)
+    key=$(printf '%s %s' "$SOURCES" "$entry" | hash_of)
+    [ -s "$kept/$key.json" ] && return
+    work=build/faults/$level-$1
     rm -rf "$work" && mkdir -p "$work/build/obj" && cp -a solver Makefile "$work"
-    cp -a build/obj/solver "$work/build/obj"        # with their times, so that only what the fault touches is compiled anew
-    FIND=$(jq -r ".faults[$k].find | @base64" $list) REPLACE=$(jq -r ".faults[$k].replace | @base64" $list) \
+    cp -a build/obj/solver "$work/build/obj" && cp -a build/commit "$work/build"     # with their times: only what the fault touches is compiled anew
+    FIND=$(printf %s "$entry" | jq -r '.find | @base64') REPLACE=$(printf %s "$entry" | jq -r '.replace | @base64') \
         perl -MMIME::Base64 -0777 -i -pe 'BEGIN { $f = decode_base64($ENV{FIND}); $r = decode_base64($ENV{REPLACE}) }
-            $n = () = /\Q$f\E/g; die "found $n times, not once\n" unless $n == 1; s/\Q$f\E/$r/' "$work/$(jq -r ".faults[$k].file" $list)"
-    make --no-print-directory -s -C "$work" -j"$(nproc)" B=build CFLAGS="-O2 -g -Wno-error" build/shear 2>"$work/make.txt" ||
-        { echo "faults: \"$name\" does not build"; cat "$work/make.txt"; exit 1; }
-    verdict="passed everything" where="" said="" start=$(date +%s.%N)
-    for layer in 1 2 3 4 5 6; do
-        build/gate run --candidate "$work/build/shear --evaluate" --layer $layer --jobs "$(nproc)" --work "$work/cases" --report "$work/report" \
-            >"$work/gate.txt" 2>&1 && continue
-        code=$?
-        [ $code = 1 ] || [ $code = 3 ] || { echo "faults: the gate itself ended with $code"; cat "$work/gate.txt"; exit 1; }
-        verdict=caught
-        where=$(awk '/ FAIL | inconclusive / { print $1 " " $2; exit }' "$work/gate.txt")
-        said=$(grep -m1 '  *fails: \|  *inconclusive: ' "$work/gate.txt" | sed 's/^ *//')
+            $n = () = /\Q$f\E/g; die "found $n times, not once\n" unless $n == 1; s/\Q$f\E/$r/' "$work/$(printf %s "$entry" | jq -r .file)"
+    make --no-print-directory -s -C "$work" B=build CFLAGS="-O2 -w" build/shear 2>"$work/make.txt" ||
+        { echo "faults: does not build: $entry" >&2; cat "$work/make.txt" >&2; exit 255; }
+    times >"$work/before"
+    where="" layer="" said="" code=0
+    for span in "0 0.1" "0.1 0.2" "0.2 0.4" "0.4 0.8" "0.8 1.6" "1.6 3.2" "3.2 6.4" "6.4 1e9"; do
+        cases=$(cases_between ${span})
+        [ -n "$cases" ] || continue
+        run "$work/build/shear" "$work" --case "$cases" --stop-after 1
+        case $code in 0 | 77) continue ;; esac
+        layer=$(awk '/ FAIL | inconclusive / { print $1; exit }' "$work/gate.txt")
+        where=$(awk '/ FAIL | inconclusive / { print $2; exit }' "$work/gate.txt")
+        said=$(jq -r '[.results[] | select(.verdict == "FAIL" or .verdict == "inconclusive")] | sort_by(.verdict != "FAIL", .judgement) | .[0].sentence' \
+            "$work/cases/$where/results.json" 2>/dev/null || echo "the gate's own check ended")
         break
     done
-    seconds=$(echo "$(date +%s.%N) $start" | awk '{ printf "%.1f", $1 - $2 }')
-    good=yes
-    [ "$class" = equivalent ] && wanted="passed everything" || wanted=caught
-    [ "$verdict" = "$wanted" ] || { good=NO; missed=$((missed + 1)); }
-    tried=$((tried + 1))
-    printf '%s\t%s\t%s s\t%s\t%s\t%s\n' "$good" "$verdict" "$seconds" "$name" "$where" "$said" | tee -a $table
+    times >"$work/after"
+    seconds=$(awk 'FNR == 2 { split($1, u, /[ms]/); split($2, s, /[ms]/); t = 60 * (u[1] + s[1]) + u[2] + s[2]; if (n++) printf "%.2f", t - first; else first = t }' \
+        "$work/before" "$work/after")
+    jq -cn --arg case "$where" --arg layer "$layer" --argjson seconds "$seconds" --arg sentence "$said" '$ARGS.named' >"$kept/$key.json.new"
+    mv "$kept/$key.json.new" "$kept/$key.json"
     rm -rf "$work"
-done
-echo "faults: $tried tried, $missed judged wrongly"
-[ $missed = 0 ]
+    right=$(printf %s "$entry" | jq -r --arg case "$where" 'if (.class == "equivalent") == ($case == "") then "ok " else "WRONG" end')
+    printf '%s\t%s s\t%s\t%s\t%s\n' "$right" "$seconds" "$(printf %s "$entry" | jq -r .name)" "${where:-passed everything}" "$said" | cut -c1-250
+}
+
+# The table: what each level has said of each entry; of levels that have no answer the old cells.
+assemble() {
+    for k in $(seq 0 $((count - 1))); do
+        entry=$(jq -c ".faults[$k]" $list)
+        key=$(printf '%s %s' "$SOURCES" "$entry" | hash_of)
+        for l in A B C; do
+            [ -s "build/faults/$l/$key.json" ] && cat "build/faults/$l/$key.json" || echo null
+        done | jq -cs --argjson entry "$entry" '$entry + { A: .[0], B: .[1], C: .[2] }'
+    done >build/faults/all.jsonl
+    [ -f $table ] && python3 -c 'import csv, json, sys; json.dump({r["fault"]: r for r in csv.DictReader(open(sys.argv[1]))}, sys.stdout)' $table \
+        >build/faults/before.json || echo '{}' >build/faults/before.json
+    jq -rn --slurpfile old build/faults/before.json '
+        def caught(x; equivalent): if x.case == "" then (if equivalent then "passes, as it must" else "NOT CAUGHT" end) else x.case end;
+        ["fault", "class", "origin", "file", "A", "layer", "seconds", "B", "B seconds", "C", "C seconds", "sentence at level A"],
+        (inputs | . as $f | ($old[0][.name] // {}) as $was | (.class == "equivalent") as $e | [.name, .class, .origin, .file]
+            + (if .A then [caught(.A; $e), .A.layer, .A.seconds] else [$was.A, $was.layer, $was.seconds] end)
+            + (if .B then [caught(.B; $e), .B.seconds] else [$was.B, $was["B seconds"]] end)
+            + (if .C then [caught(.C; $e), .C.seconds] else [$was.C, $was["C seconds"]] end)
+            + [if .A then .A.sentence else $was["sentence at level A"] end]) | @csv' build/faults/all.jsonl >$table.new
+    mv $table.new $table
+}
+
+summary() {
+    jq -rs --arg level "$level" 'def at: .[$level];
+        map(select(at)) | (map(select(.class != "equivalent"))) as $faults | (map(select(.class == "equivalent"))) as $same
+        | ($faults | map(select(at.case != ""))) as $caught | ($caught | map(at.seconds) | sort) as $t
+        | "faults at level \($level): \($caught | length) of \($faults | length) caught, median \($t[($t | length) / 2 | floor]) s, longest \($t[-1]) s; "
+          + "\($same | map(select(at.case == "")) | length) of \($same | length) equivalent changes pass",
+          ($faults[] | select(at.case == "") | "  not caught: \(.name)"), ($same[] | select(at.case != "") | "  flagged: \(.name): \(at.sentence)")' build/faults/all.jsonl
+}
+
+export SOURCES="${SOURCES:-$(sources)}"
+[ "${1:-}" = judge ] && { judge "$2"; exit; }
+count=$(jq '.faults | length' $list)
+reference
+jq -r --arg only "${ONLY:-}" '.faults | to_entries[] | select(.value.name | contains($only)) | .key' $list | xargs -P "$jobs" -n 1 "$0" judge
+assemble
+summary | tee build/faults/summary.txt
+[ "$(wc -l <build/faults/summary.txt)" = 1 ]

@@ -34,6 +34,8 @@ static json_t *describe(const struct check_run *run, const char *name, const str
                              "scene", "scene.json", "needs", c->needs);
     if (q->draws)
         json_object_set_new(json, "draws", json_integer((json_int_t)q->draws));
+    if (q->pause)
+        json_object_set_new(json, "pause", json_integer(q->pause));
     if (q->steps)
         json_object_set_new(json, "steps", json_integer((json_int_t)q->steps));
     if (q->stress)

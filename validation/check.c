@@ -291,6 +291,25 @@ static void run_attempt(struct check_run *run, const struct check *check, int at
     check->run(run);
 }
 
+/*
+ * A case that has failed without a second look: something that needs no statistics is wrong, or a p is so small that four times the samples
+ * could not change the verdict. Alarms beside it stay unsettled.
+ */
+static bool settled_at_once(struct check_run *run)
+{
+    bool failed = false;
+    for (size_t k = 0; k < run->results.count; k++)
+        failed = failed || run->results.item[k].verdict == VERDICT_FAIL || run->results.item[k].p < DECISIVE;
+    for (size_t k = 0; k < run->results.count && failed; k++) {
+        struct result *r = &run->results.item[k];
+        if (alarms(r)) {
+            r->verdict = r->p < DECISIVE ? VERDICT_FAIL : VERDICT_INCONCLUSIVE;
+            result_notes(r, r->p < DECISIVE ? "p = %.2g at the first look needs no second." : "First p = %.2g is an alarm; not looked at again, for the case has failed.", r->p);
+        }
+    }
+    return failed;
+}
+
 /* A case that names a quantity for a term must have judged one: else the coverage matrix claims what nobody asked. */
 static void judge_terms(struct check_run *run)
 {
@@ -323,7 +342,7 @@ void check_judge(struct check_run *run, const struct check *check, int p_values,
     if (given > run->gate_case->p_values)
         check_error(run, INVARIANT, "number of p-values", given, run->gate_case->p_values, given, run->gate_case->p_values,
                     "the check gives more p-values than its case declares; this is a mistake in the suite");
-    if (!alarm || offline_waits(run->candidate))
+    if (!alarm || settled_at_once(run) || offline_waits(run->candidate))
         return;
     struct results first = run->results;
     run->results = (struct results){ 0 };

@@ -75,6 +75,7 @@ struct question {
     size_t draws;                       /* for "noise", "friction" */
     size_t steps;                       /* for "steps" */
     bool stress;                        /* for "steps": is it asked for */
+    int pause;                          /* for "run": the step after which it stops and goes on from what is on disk; 0: none */
 };
 
 /*
@@ -122,6 +123,7 @@ void result_notes(struct result *r, const char *format, ...) __attribute__((form
 
 #define STAGE_ONE_ALARM 1e-4
 #define SUITE_ALARM_RATE 1e-6
+#define DECISIVE 1e-20              /* far below SUITE_ALARM_RATE over any number of results */
 
 /* Runs the check with the two-stage rule; the results are final afterwards. `p_values`: those of the whole suite. */
 void check_judge(struct check_run *run, const struct check *check, int p_values, unsigned seed_offset);

@@ -43,6 +43,7 @@ static const char help[] =
     "  --needs PHYSICS       only cases that need this: contact, drag, lubrication, ...\n"
     "  --tier TIER           fast (default), standard, full; each includes the ones before it\n"
     "  --jobs N              worker processes (default 1)\n"
+    "  --stop-after N        end the run once N cases have failed\n"
     "  --suite VERSION       the suite as it was frozen, for example " GATE_SUITE ": newer cases only warn, and a case that has\n"
     "                        changed since is an error (default: the cases as they are)\n"
     "  --known FILE          failures that are accepted, with reason and expiry (docs/known.schema.json)\n"
@@ -62,7 +63,7 @@ struct options {
     bool exporting;
     char suite_dir[PATH_LENGTH];
     enum tier tier;
-    int jobs;
+    int jobs, stop_after;
     unsigned seed_offset, seeds;
     bool calibrating;
 };
@@ -143,6 +144,10 @@ static int parse_option(struct options *o, const char *name, const char *value)
         if (!whole_number(value, 1, 256, &n))
             return usage("--jobs '%s' is no whole number from 1 to 256", value);
         o->jobs = (int)n;
+    } else if (strcmp(name, "--stop-after") == 0) {
+        if (!whole_number(value, 1, 1000, &n))
+            return usage("--stop-after '%s' is no whole number from 1 to 1000", value);
+        o->stop_after = (int)n;
     } else if (strcmp(name, "--seed-offset") == 0) {
         if (!whole_number(value, 0, 2147483647, &n))
             return usage("--seed-offset '%s' is no whole number from 0 to 2147483647", value);
@@ -294,7 +299,7 @@ static int run_cases(const struct options *o, const struct suite_of_cases *suite
         return usage("%s", why);
     work = realpath(o->work, NULL); /* absolute: a candidate may change its folder */
     struct run_plan plan = { .gate_case = chosen, .count = count, .work = work, .jobs = o->jobs, .p_values = suite->p_values,
-                             .seed_offset = o->seed_offset, .keep = o->keep, .known = &known };
+                             .seed_offset = o->seed_offset, .stop_after = o->stop_after, .keep = o->keep, .known = &known };
     struct capabilities capabilities;
     if (!capabilities_choose(o->capabilities, o->candidate, o->level, &capabilities, why)) {
         free(work);
@@ -324,7 +329,7 @@ static int run_cases(const struct options *o, const struct suite_of_cases *suite
     const double start = candidate_now();
     if (!o->exporting)
         terminal_open(&p);
-    run_all(&plan, done, o->exporting ? quiet : terminal_case);
+    count = run_all(&plan, done, o->exporting ? quiet : terminal_case);
     p.seconds = candidate_now() - start;
 
     const bool written = o->exporting || write_reports(o, &p, suite, done, count, why);

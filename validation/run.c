@@ -120,8 +120,16 @@ static void stop_all(struct worker *workers, int jobs)
     }
     while (wait(NULL) > 0)
         ;
-    fprintf(stderr, "\ngate: interrupted\n");
-    exit(130);
+}
+
+/* Moves the cases that have ended to the front; returns how many. */
+static size_t keep_finished(struct finished_case *done, const bool *ended, size_t count)
+{
+    size_t kept = 0;
+    for (size_t k = 0; k < count; k++)
+        if (ended[k])
+            done[kept++] = done[k];
+    return kept;
 }
 
 static void watch_for_interrupts(void)
@@ -131,14 +139,16 @@ static void watch_for_interrupts(void)
     sigaction(SIGTERM, &action, NULL);
 }
 
-void run_all(const struct run_plan *plan, struct finished_case *done, void (*completed)(const struct finished_case *))
+size_t run_all(const struct run_plan *plan, struct finished_case *done, void (*completed)(const struct finished_case *))
 {
     const bool terminal = isatty(STDOUT_FILENO);
     struct worker *workers = calloc((size_t)plan->jobs, sizeof *workers);
+    bool *ended = calloc(plan->count + 1, sizeof *ended);
     size_t next = 0, finished = 0;
+    int red = 0;
     double shown = candidate_now();
     watch_for_interrupts();
-    while (finished < plan->count) {
+    while (finished < plan->count && (!plan->stop_after || red < plan->stop_after)) {
         for (int w = 0; w < plan->jobs; w++) {
             int status;
             if (workers[w].pid > 0 && waitpid(workers[w].pid, &status, WNOHANG) == workers[w].pid) {
@@ -152,7 +162,9 @@ void run_all(const struct run_plan *plan, struct finished_case *done, void (*com
                 if (terminal)
                     printf("\r\033[K");
                 completed(d);
+                ended[workers[w].at] = true;
                 finished++;
+                red += d->verdict == VERDICT_FAIL || d->verdict == VERDICT_INCONCLUSIVE;
             }
             if (workers[w].pid == 0 && next < plan->count) {
                 workers[w].at = next;
@@ -162,16 +174,20 @@ void run_all(const struct run_plan *plan, struct finished_case *done, void (*com
                 next++;
             }
         }
-        if (interrupted)
+        if (interrupted) {
             stop_all(workers, plan->jobs);
+            fprintf(stderr, "\ngate: interrupted\n");
+            exit(130);
+        }
         if (terminal && candidate_now() - shown > 0.5) {
             show_progress(workers, plan->jobs, done);
             shown = candidate_now();
         }
         nanosleep(&(struct timespec){ .tv_nsec = 2000000 }, NULL);
     }
-    for (int w = 0; w < plan->jobs; w++)
-        if (workers[w].server.pid)
-            candidate_server_stop(&workers[w].server);
+    stop_all(workers, plan->jobs);          /* servers, and workers where red cases ended the run */
+    finished = keep_finished(done, ended, plan->count);
     free(workers);
+    free(ended);
+    return finished;
 }

@@ -12,12 +12,13 @@ struct run_plan {
     int jobs;
     int p_values;                       /* of the whole suite */
     unsigned seed_offset;
+    int stop_after;                     /* the run ends once so many cases are red; 0: it goes through all */
     const char *keep;                   /* check.h */
     const struct known_list *known;     /* accepted failures; null: none */
     const char *offline;                /* the folder of exported questions, or null: ask the candidate */
 };
 
-/* Fills done[k] for plan->gate_case[k]; calls `completed` as each ends. */
-void run_all(const struct run_plan *plan, struct finished_case *done, void (*completed)(const struct finished_case *));
+/* Fills done[] in the order of the plan, calls `completed` as each case ends, and returns how many ended. */
+size_t run_all(const struct run_plan *plan, struct finished_case *done, void (*completed)(const struct finished_case *));
 
 #endif

@@ -45,6 +45,8 @@ void table_remember(struct table *t, const char *name, struct fields *f)
 {
     fflush(t->file);
     fsync(fileno(t->file));                     /* a checkpoint must not know more than the disk */
+    if (t->length == 0)
+        t->length = (int64_t)ftello(t->file);   /* a header and no row yet; a resumed run has the length from its checkpoint */
     fields_take(f, (struct field){ .name = name, .at = &t->length, .size = sizeof t->length, .loaded = cut_back, .owner = t });
 }
 

@@ -4,10 +4,12 @@
 #include <string.h>
 
 extern const struct check pair_checks[], noise_checks[], friction_step_checks[], single_checks[], two_bodies_checks[], collision_checks[],
-    dilute_checks[], dense_checks[], published_shear_checks[], published_rest_checks[];
+    dilute_checks[], dense_checks[], published_shear_checks[], published_rest_checks[],
+    scattered_checks[];
 
 static const struct check *const families[] = { pair_checks, noise_checks, friction_step_checks, single_checks, two_bodies_checks,
-                                               collision_checks, dilute_checks, dense_checks, published_shear_checks, published_rest_checks };
+                                               collision_checks, dilute_checks, dense_checks, published_shear_checks, published_rest_checks,
+                                               scattered_checks };
 
 const struct check *check_find(const char *name)
 {

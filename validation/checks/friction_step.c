@@ -254,8 +254,8 @@ static void judge_step(struct check_run *run, const struct model *m, const struc
         judge_growth(run, s.R[FRICTION_STEP], s.size);
         judge_form(run, C, declared, sweeps);
         gsl_matrix_free(declared);
-        struct state_row *row = rest_states(f, 1);
-        double stray, *J = s.draw[FRICTION_STEP] = ask_impulses(run, "impulses", scene, f, row, 1, s.draws, root);
+        struct state_row *row = s.draws > 0 ? rest_states(f, 1) : NULL;        /* no draws: the response alone */
+        double stray, *J = s.draw[FRICTION_STEP] = row ? ask_impulses(run, "impulses", scene, f, row, 1, s.draws, root) : NULL;
         for (size_t k = 0; J && k < s.draws * s.size; k++)
             J[k] /= sqrt(s.kT);
         free(row);

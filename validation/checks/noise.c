@@ -396,4 +396,4 @@ static void check_cluster(struct check_run *run)
         judge_frozen(run, &m, &f, false);
 }
 
-const struct check noise_checks[] = { { "noise-pairs", check_pairs }, { "noise-cluster", check_cluster }, { NULL, NULL } };
+const struct check noise_checks[] = { { "noise-pairs", check_pairs }, { "noise-cluster", check_cluster }, { "noise-uniform", check_uniform }, { "noise-images", check_noise_images }, { NULL, NULL } };

@@ -65,5 +65,7 @@ const char *noise_blame(char text[900], const struct subject *s, int stream, con
 #define NOISE_SEEN 5.9
 double noise_declared(const struct subject *s, const char *key);       /* parameters.declared.<key> */
 void subject_free(struct subject *s);
+void check_uniform(struct check_run *run);
+void check_noise_images(struct check_run *run);
 
 #endif

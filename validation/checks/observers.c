@@ -9,33 +9,21 @@
  *     pair_distribution                     pairs of every image counted, over those of an ideal gas
  *     contacts, temperature                 contact numbers with and without rattlers; <m c^2>, <I w^2>, spins of nearest neighbours
  *     viscosity, brownian_stress            parts over eta rate, N1, N2, pressure; -(kT/V) a/(shell + depth) n n
+ *
+ * What gathers over the run is in observers_run.c.
  */
+#include "observers.h"
 #include "packing.h"
-#include "two_bodies.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-struct near_pair { size_t i, j; double n[3], distance, gap; };
-struct film {
-    struct check_run *run;
-    json_t *scene;
-    struct model m;
-    struct state_row *row;
-    struct track track;
-    struct near_pair **near;        /* of each frame, all images within `range` */
-    size_t count, frames, *nears;
-    int every;
-    double dt, kT, range;
-    char out[PATH_LENGTH];
-};
-
-static double radius(const struct film *f, size_t i) { return f->m.radius[f->row[i].species - 1]; }
-static double mass(const struct film *f, size_t i) { return 4.0 / 3.0 * M_PI * f->m.density[f->row[i].species - 1] * gsl_pow_3(radius(f, i)); }
+double film_radius(const struct film *f, size_t i) { return f->m.radius[f->row[i].species - 1]; }
+static double mass(const struct film *f, size_t i) { return 4.0 / 3.0 * M_PI * f->m.density[f->row[i].species - 1] * gsl_pow_3(film_radius(f, i)); }
 
 /* Velocity and spin without those of the flow. */
-static void peculiar(const struct film *f, const struct track_point *p, double c[3], double w[3])
+void film_peculiar(const struct film *f, const struct track_point *p, double c[3], double w[3])
 {
     double G[3][3];
     memcpy(G, f->m.gradient, sizeof G);
@@ -53,7 +41,7 @@ static bool find_pairs(struct film *f, size_t frame)
     json_t *scene = json_deep_copy(f->scene);
     double inverse[3][3];
     size_t room = 0;
-    scene_set(scene, "start.time", json_real((double)frame * f->every * f->dt));
+    scene_set(scene, "start.time", json_real(f->begin + (double)frame * f->every * f->dt));
     bool good = model_read(f->run, scene, &now);
     json_decref(scene);
     for (int v = 0; v < 3; v++) {
@@ -73,7 +61,7 @@ static bool find_pairs(struct film *f, size_t frame)
                     for (int c = 0; c < 3; c++)
                         p.n[c] += (share[v] - round(share[v]) + step[v]) * now.cell[v][c];
                 p.distance = norm(p.n);
-                p.gap = p.distance - radius(f, i) - radius(f, j);
+                p.gap = p.distance - film_radius(f, i) - film_radius(f, j);
                 if (p.distance >= f->range)
                     continue;
                 for (int c = 0; c < 3; c++)
@@ -86,10 +74,13 @@ static bool find_pairs(struct film *f, size_t frame)
     return good;
 }
 
-/* False where the candidate has not written the table (skipped) or it cannot be read (recorded). */
-static bool open_table(const struct film *f, const char *file, const char *columns, struct table *t)
+/* False where the case does not ask for the table, where the candidate has not written it (skipped) or it cannot be read (recorded). */
+bool film_table(const struct film *f, const char *file, const char *columns, struct table *t)
 {
-    char path[PATH_LENGTH], why[WHY_LENGTH];
+    char path[PATH_LENGTH], why[WHY_LENGTH], asked[64];
+    snprintf(asked, sizeof asked, "tables.%.*s", (int)strcspn(file, "."), file);
+    if (strcmp(file, "stress.csv") != 0 && !scene_get(f->run->gate_case->parameters, strcmp(file, "pair_plane.csv") ? asked : "tables.pair_distribution.plane"))
+        return false;
     path_join(path, f->out, file);
     FILE *there = fopen(path, "r");
     if (!there) {
@@ -104,13 +95,13 @@ static bool open_table(const struct film *f, const char *file, const char *colum
 }
 
 /* The frame of a row whose first column is the step. */
-static size_t frame_of(const struct film *f, const struct table *t, size_t row)
+size_t film_frame(const struct film *f, const struct table *t, size_t row)
 {
     const double frame = table_at(t, row, 0) / f->every;
     return frame >= 0 && frame < (double)f->frames && frame == floor(frame) ? (size_t)frame : f->frames;
 }
 
-static void judge(const struct film *f, const char *what, const struct worst *w)
+void film_judge(const struct film *f, const char *what, const struct worst *w)
 {
     check_error(f->run, INVARIANT, what, w->measured, w->expected, w->error, f->run->gate_case->tolerance,
                 "%s: row %zu says %s; its own trajectory says that", what, w->at + 1, compare(w));
@@ -118,7 +109,7 @@ static void judge(const struct film *f, const char *what, const struct worst *w)
 
 /* --- at each moment --- */
 
-static void temperatures(const struct film *f, size_t frame, int species, double T[6])
+void film_temperatures(const struct film *f, size_t frame, int species, double T[6])
 {
     double of = 0.0;
     memset(T, 0, 6 * sizeof *T);
@@ -126,11 +117,11 @@ static void temperatures(const struct film *f, size_t frame, int species, double
         double c[3], w[3];
         if (species && f->row[i].species != species)
             continue;
-        peculiar(f, track_at(&f->track, frame, i), c, w);
+        film_peculiar(f, track_at(&f->track, frame, i), c, w);
         of += 1.0;
         for (int k = 0; k < 3; k++) {
             T[k] += mass(f, i) * c[k] * c[k];
-            T[3 + k] += 0.4 * mass(f, i) * gsl_pow_2(radius(f, i)) * w[k] * w[k];
+            T[3 + k] += 0.4 * mass(f, i) * gsl_pow_2(film_radius(f, i)) * w[k] * w[k];
         }
     }
     for (int k = 0; k < 6; k++)
@@ -139,7 +130,7 @@ static void temperatures(const struct film *f, size_t frame, int species, double
 
 static bool in_range(const struct film *f, const struct near_pair *p)
 {
-    const double mean = 0.5 * (radius(f, p->i) + radius(f, p->j));
+    const double mean = 0.5 * (film_radius(f, p->i) + film_radius(f, p->j));
     return p->gap <= (f->m.has_lubrication ? f->m.lubrication.outer_gap * mean : 0.0);
 }
 
@@ -156,8 +147,8 @@ static double spins_of_neighbours(const struct film *f, size_t frame)
         }
         if (!nearest)
             continue;
-        peculiar(f, track_at(&f->track, frame, i), c, own);
-        peculiar(f, track_at(&f->track, frame, nearest->i == i ? nearest->j : nearest->i), c, other);
+        film_peculiar(f, track_at(&f->track, frame, i), c, own);
+        film_peculiar(f, track_at(&f->track, frame, nearest->i == i ? nearest->j : nearest->i), c, other);
         together += dot(own, other);
         alone += dot(own, own);
     }
@@ -172,15 +163,15 @@ static void judge_temperature(const struct film *f)
     const char *one = json_string_value(scene_get(json_array_get(scene_get(f->scene, "species"), 0), "name"));
     const char *two = json_string_value(scene_get(json_array_get(scene_get(f->scene, "species"), 1), "name"));
     snprintf(columns, sizeof columns, "step,T_x,T_y,T_z,T,W_x,W_y,W_z,W,T_%s,W_%s,T_%s,W_%s,spin_neighbours", one, one, two, two);
-    if (!open_table(f, "temperature.csv", columns, &t))
+    if (!film_table(f, "temperature.csv", columns, &t))
         return;
     for (size_t r = 0; r < t.rows; r++) {
-        const size_t frame = frame_of(f, &t, r);
+        const size_t frame = film_frame(f, &t, r);
         double T[3][6];
         if (frame == f->frames)
             continue;
         for (int k = 0; k < 3; k++)
-            temperatures(f, frame, k, T[k]);
+            film_temperatures(f, frame, k, T[k]);
         for (size_t k = 0; k < 3; k++) {
             worst_see(&w, table_at(&t, r, 1 + k), T[0][k], f->kT, r);
             worst_see(&w, table_at(&t, r, 5 + k), T[0][3 + k], f->kT, r);
@@ -190,8 +181,8 @@ static void judge_temperature(const struct film *f)
         worst_see(&spins, table_at(&t, r, 13), spins_of_neighbours(f, frame), 1.0, r);
     }
     table_free(&t);
-    judge(f, "temperature.csv", &w);
-    judge(f, "temperature.csv: spins of nearest neighbours", &spins);
+    film_judge(f, "temperature.csv", &w);
+    film_judge(f, "temperature.csv: spins of nearest neighbours", &spins);
 }
 
 /* Contact number, that of the backbone, and how many rattle: taken away as long as some have fewer contacts than hold a place. */
@@ -234,11 +225,11 @@ static void judge_contacts(const struct film *f)
     static const char *const names[4] = { "contact number", "backbone", "rattlers", "pairs in range" };
     struct table t;
     struct worst w[4] = { WORST_NONE, WORST_NONE, WORST_NONE, WORST_NONE };
-    if (!open_table(f, "contacts.csv", "step,contacts,backbone,rattlers,near", &t))
+    if (!film_table(f, "contacts.csv", "step,contacts,backbone,rattlers,near", &t))
         return;
     for (size_t r = 0; r < t.rows; r++) {
         double expected[4];
-        const size_t frame = frame_of(f, &t, r);
+        const size_t frame = film_frame(f, &t, r);
         if (frame == f->frames)
             continue;
         count_contacts(f, frame, expected);
@@ -249,7 +240,7 @@ static void judge_contacts(const struct film *f)
     for (int k = 0; k < 4; k++) {
         char what[64];
         snprintf(what, sizeof what, "contacts.csv: %s", names[k]);
-        judge(f, what, &w[k]);
+        film_judge(f, what, &w[k]);
     }
 }
 
@@ -259,14 +250,14 @@ static void judge_viscosity(const struct film *f)
     struct table t, stress[4];
     struct worst w = WORST_NONE, differences = WORST_NONE;
     const double unit = f->m.viscosity * f->m.gradient[0][1];
-    if (!open_table(f, "viscosity.csv", "step,eta_contact_normal,eta_contact_tangential,eta_lubrication,eta_drag,eta_r,N1,N2,pressure", &t))
+    if (!film_table(f, "viscosity.csv", "step,eta_contact_normal,eta_contact_tangential,eta_lubrication,eta_drag,eta_r,N1,N2,pressure", &t))
         return;
     int opened = 0;
     for (; opened < 4; opened++) {
         char columns[400];
         const char *p = parts[opened];
         snprintf(columns, sizeof columns, "step,%s_xx,%s_yy,%s_zz,%s_xy,%s_yx", p, p, p, p, p);
-        if (!open_table(f, "stress.csv", columns, &stress[opened]))
+        if (!film_table(f, "stress.csv", columns, &stress[opened]))
             break;
     }
     for (size_t r = 0; opened == 4 && r < t.rows && r < stress[0].rows; r++) {
@@ -286,8 +277,22 @@ static void judge_viscosity(const struct film *f)
     for (int k = 0; k < opened; k++)
         table_free(&stress[k]);
     table_free(&t);
-    judge(f, "viscosity.csv: parts and their sum", &w);
-    judge(f, "viscosity.csv: N1, N2, pressure", &differences);
+    film_judge(f, "viscosity.csv: parts and their sum", &w);
+    film_judge(f, "viscosity.csv: N1, N2, pressure", &differences);
+}
+
+double film_depth(const struct film *f) { return sqrt(M_PI * f->kT / (2.0 * f->m.contact.normal_stiffness)); }
+
+void film_structure(const struct film *f, size_t frame, double shell, double depth, double S[6])
+{
+    memset(S, 0, 6 * sizeof *S);
+    for (size_t k = 0; k < f->nears[frame]; k++)
+        for (int side = 0; side < 2; side++) {
+            const struct near_pair *p = &f->near[frame][k];
+            const double a = film_radius(f, side ? p->j : p->i);
+            for (int c = 0; p->gap < shell * a && c < 6; c++)
+                S[c] -= f->kT / f->m.volume * a / (shell * a + depth) * p->n[c < 3 ? c : c == 5] * p->n[c < 3 ? c : c == 3 ? 1 : 2];
+        }
 }
 
 static void judge_brownian(const struct film *f)
@@ -300,131 +305,21 @@ static void judge_brownian(const struct film *f)
         const size_t used = strlen(columns);
         snprintf(columns + used, sizeof columns - used, ",%s_xx,%s_yy,%s_zz,%s_xy,%s_xz,%s_yz", kinds[k], kinds[k], kinds[k], kinds[k], kinds[k], kinds[k]);
     }
-    if (!open_table(f, "brownian_stress.csv", columns, &t))
+    if (!film_table(f, "brownian_stress.csv", columns, &t))
         return;
-    const double depth = sqrt(M_PI * f->kT / (2.0 * f->m.contact.normal_stiffness));
     for (size_t r = 0; r < t.rows; r++) {
-        const size_t frame = frame_of(f, &t, r);
+        const size_t frame = film_frame(f, &t, r);
         double S[4][6] = { { 0 } };
-        for (size_t k = 0; frame < f->frames && k < f->nears[frame]; k++)
-            for (int kind = 0; kind < 4; kind++)
-                for (int side = 0; side < 2; side++) {
-                    const struct near_pair *p = &f->near[frame][k];
-                    const double a = radius(f, side ? p->j : p->i), shell = kind == 1 ? 0.02 * a : 0.05 * a;
-                    for (int c = 0; kind != 2 && p->gap < shell && c < 6; c++)
-                        S[kind][c] -= f->kT / f->m.volume * a / (shell + (kind == 3 ? 0.0 : depth)) * p->n[c < 3 ? c : c == 5] * p->n[c < 3 ? c : c == 3 ? 1 : 2];
-                }
+        for (int kind = 0; kind < 4 && frame < f->frames; kind++)
+            if (kind != 2)
+                film_structure(f, frame, kind == 1 ? 0.02 : 0.05, kind == 3 ? 0.0 : film_depth(f), S[kind]);
         for (int c = 0; c < 6; c++)
             S[2][c] = S[1][c] + (S[1][c] - S[0][c]) * 0.02 / 0.03;      /* on a straight line to no shell */
         for (size_t k = 0; frame < f->frames && k < 24; k++)
             worst_see(&w, table_at(&t, r, 1 + k), S[k / 6][k % 6], (double)f->count * f->kT / f->m.volume, r);
     }
     table_free(&t);
-    judge(f, "brownian_stress.csv", &w);
-}
-
-/* --- over the run --- */
-
-/* Mean of a product over the particles of a species and the origins of a lag: all of them to 16 samples, every 2^level-th beyond. */
-typedef void product_of(const struct film *f, const struct track_point *old, const struct track_point *now, double duration, double out[6]);
-
-static double correlate(const struct film *f, size_t lag, int species, product_of *product, double mean[6])
-{
-    size_t stride = 1;
-    double samples = 0.0, one[6];
-    while (lag > 16 * stride)
-        stride *= 2;
-    memset(mean, 0, 6 * sizeof *mean);
-    for (size_t s = 0; s + lag < f->frames; s += stride)
-        for (size_t i = 0; i < f->count; i++) {
-            if (f->row[i].species != species)
-                continue;
-            product(f, track_at(&f->track, s, i), track_at(&f->track, s + lag, i), (double)lag * f->every * f->dt, one);
-            samples += 1.0;
-            for (int k = 0; k < 6; k++)
-                mean[k] += one[k];
-        }
-    for (int k = 0; k < 6 && samples > 0; k++)
-        mean[k] /= samples;
-    return samples;
-}
-
-static void displaced(const struct film *f, const struct track_point *old, const struct track_point *now, double duration, double out[6])
-{
-    for (int k = 0; k < 3; k++) {
-        double carried = old->x[k];
-        for (int l = 0; l < 3; l++)
-            carried += f->m.gradient[k][l] * duration * old->x[l];
-        const double vorticity = f->m.gradient[(k + 2) % 3][(k + 1) % 3] - f->m.gradient[(k + 1) % 3][(k + 2) % 3];
-        out[k] = gsl_pow_2(now->x[k] - carried);
-        out[3 + k] = gsl_pow_2(now->turn[k] - old->turn[k] - 0.5 * vorticity * duration);
-    }
-}
-
-static void remembered(const struct film *f, const struct track_point *old, const struct track_point *now, double duration, double out[6])
-{
-    double c[2][3], w[2][3];
-    (void)duration;
-    peculiar(f, old, c[0], w[0]);
-    peculiar(f, now, c[1], w[1]);
-    for (int k = 0; k < 3; k++) {
-        out[k] = c[0][k] * c[1][k];
-        out[3 + k] = w[0][k] * w[1][k];
-    }
-}
-
-static void judge_lags(const struct film *f, const char *file, const char *columns, product_of *product)
-{
-    struct table t;
-    struct worst w = WORST_NONE, samples = WORST_NONE;
-    if (!open_table(f, file, columns, &t))
-        return;
-    for (size_t r = 0; r < t.rows; r++) {
-        double mean[6], scale[2] = { 0 };
-        const double number = correlate(f, (size_t)lround(table_at(&t, r, 0) / (f->every * f->dt)), (int)table_at(&t, r, 1), product, mean);
-        for (int k = 0; k < 6; k++)
-            scale[k / 3] = fmax(scale[k / 3], fabs(mean[k]));
-        worst_see(&samples, table_at(&t, r, 2), number, 1.0, r);
-        for (size_t k = 0; k < 6; k++)
-            worst_see(&w, table_at(&t, r, 3 + k), mean[k], scale[k / 3], r);
-    }
-    table_free(&t);
-    char what[64];
-    judge(f, file, &w);
-    snprintf(what, sizeof what, "%s: samples", file);
-    judge(f, what, &samples);
-}
-
-static void judge_distribution(const struct film *f)
-{
-    struct table t;
-    struct worst counts = WORST_NONE, g = WORST_NONE;
-    double of[2] = { 0 };
-    if (!open_table(f, "pair_distribution.csv", "kind$,species_a,species_b,low,high,count,g", &t))
-        return;
-    for (size_t i = 0; i < f->count; i++)
-        of[f->row[i].species - 1] += 1.0;
-    for (size_t r = 0; r < t.rows; r++) {
-        const int a = (int)table_at(&t, r, 1), b = (int)table_at(&t, r, 2);
-        const bool near = strcmp(table_word(&t, r, 0), "near") == 0;
-        const double low = table_at(&t, r, 3), high = table_at(&t, r, 4), touch = near ? f->m.radius[a - 1] + f->m.radius[b - 1] : 0.0;
-        double found = 0.0;
-        for (size_t s = 0; s < f->frames; s++)
-            for (size_t k = 0; k < f->nears[s]; k++) {
-                const struct near_pair *p = &f->near[s][k];
-                const int one = f->row[p->i].species, two = f->row[p->j].species;
-                const double at = near ? p->gap : p->distance;
-                found += ((one == a && two == b) || (one == b && two == a)) && at >= low && at < high;
-            }
-        const double pairs = a == b ? 0.5 * of[a - 1] * (of[a - 1] - 1.0) : of[a - 1] * of[b - 1];
-        const double ideal = pairs / f->m.volume * 4.0 / 3.0 * M_PI * (gsl_pow_3(touch + high) - gsl_pow_3(touch + low)) * (double)f->frames;
-        worst_see(&counts, table_at(&t, r, 5), found, 1.0, r);
-        worst_see(&g, table_at(&t, r, 6), found / ideal, fmax(found / ideal, 1.0), r);
-    }
-    table_free(&t);
-    judge(f, "pair_distribution.csv: counts", &counts);
-    check_error(f->run, INVARIANT, "pair_distribution.csv: g", g.measured, g.expected, g.error, 1e-8, "row %zu: g is %s; the pairs found over those of an "
-                "ideal gas in that shell give that", g.at + 1, compare(&g));      /* written with nine digits */
+    film_judge(f, "brownian_stress.csv", &w);
 }
 
 /* --- the run --- */
@@ -485,6 +380,7 @@ void check_observers(struct check_run *run)
     f.count = (size_t)(kind[0].count + kind[1].count);
     f.dt = scene_number(f.scene, "dynamics.verlet.dt", NAN);
     f.kT = scene_number(f.scene, "fluid.kT", NAN);
+    f.begin = scene_number(f.scene, "start.time", 0.0);
     f.row = calloc(f.count, sizeof *f.row);
     f.near = calloc(f.frames, sizeof *f.near);
     f.nears = calloc(f.frames, sizeof *f.nears);
@@ -502,9 +398,12 @@ void check_observers(struct check_run *run)
         judge_contacts(&f);
         judge_viscosity(&f);
         judge_brownian(&f);
-        judge_lags(&f, "displacement.csv", "lag,species,samples,msd_x,msd_y,msd_z,turn_x,turn_y,turn_z", displaced);
-        judge_lags(&f, "velocity_correlation.csv", "lag,species,samples,c_x,c_y,c_z,w_x,w_y,w_z", remembered);
-        judge_distribution(&f);
+        film_judge_lags(&f);
+        film_judge_distribution(&f);
+        film_judge_plane(&f);
+        film_judge_stress_table(&f);
+        film_judge_green_kubo(&f);
+        film_judge_averages(&f);
         judge_unwatched(&f);
         track_free(&f.track);
     }

@@ -31,5 +31,7 @@ void check_langevin(struct check_run *run);
 void check_shear(struct check_run *run);
 void check_tether(struct check_run *run);
 void check_stages(struct check_run *run);
+void check_thermal(struct check_run *run);
+void check_stages_pair(struct check_run *run);
 
 #endif

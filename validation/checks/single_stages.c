@@ -181,11 +181,125 @@ static bool try_drive(struct check_run *run, const json_t *drive, size_t number)
     return good;
 }
 
+/*
+ * A run that begins in the middle: strain counts from its begin, and spheres that follow the flow have no displacement of their own, for the
+ * deformation from one moment to another is that of the rates between them.
+ */
+static void try_late(struct check_run *run, const json_t *drive, size_t number)
+{
+    const char *label = json_string_value(json_object_get(drive, "name"));
+    const double begin = scene_number(run->gate_case->parameters, "late", NAN), dt = scene_number(run->gate_case->parameters, "dt", NAN);
+    json_t *scene = variant_scene(run->gate_case, drive);
+    struct theory_stage stage[STAGES];
+    struct state_row start[SPHERES];
+    struct worst strain = WORST_NONE, own = WORST_NONE;
+    struct model m;
+    struct table t;
+    struct track track;
+    char name[64], out[PATH_LENGTH], path[PATH_LENGTH], why[WHY_LENGTH], what[96];
+    const int at = (int)(1.2 / dt);
+    double G[3][3], way[2];
+    scene_set(scene, "stages", json_incref(json_object_get(drive, "stages")));
+    scene_set(scene, "start.time", json_real(begin));
+    scene_set(scene, "output.stress", json_pack("{si}", "every", 1));
+    scene_set(scene, "output.displacement", json_pack("{si si}", "every", 5, "levels", 3));
+    const size_t stages = read_stages(json_object_get(drive, "stages"), stage);
+    theory_driven_flow(stage, stages, begin, G, &way[0]);
+    if (model_read(run, scene, &m))
+        place(run, &m, stage, stages, 0.0, start);
+    for (size_t i = 0; i < SPHERES; i++)
+        apply(G, start[i].x, start[i].u);
+    snprintf(name, sizeof name, "late-%zu", number);
+    snprintf(what, sizeof what, "%s: strain from the middle on", label);
+    if (track_ask(run, name, scene, start, SPHERES, &at, 1, &track)) {
+        track_free(&track);
+        path_join(out, run->work, name);
+        path_join(path, out, "out/stress.csv");
+        if (table_read(path, "time,strain", &t, why)) {
+            for (size_t r = 0; r < t.rows; r++) {
+                theory_driven_flow(stage, stages, table_at(&t, r, 0), G, &way[1]);
+                worst_see(&strain, table_at(&t, r, 1), way[1] - way[0], 1.0, r);
+            }
+            table_free(&t);
+            check_error(run, MODEL, what, strain.measured, strain.expected, strain.error, 1e-5, "at row %zu of a run from time %g on the way travelled is %s; it "
+                        "counts from the begin of the run", strain.at, begin, compare(&strain));
+        } else
+            check_garbage(run, why);
+        path_join(path, out, "out/displacement.csv");
+        snprintf(what, sizeof what, "%s: displacement beyond the flow's", label);
+        if (!table_read(path, "lag,msd_x,msd_y,msd_z", &t, why))
+            check_skip(run, what, "the candidate writes no displacement.csv");
+        else {
+            for (size_t r = 0; r < t.rows; r++)
+                for (size_t c = 1; c < 4; c++)
+                    worst_see(&own, table_at(&t, r, c), 0.0, gsl_pow_2(m.radius[0]), r);
+            table_free(&t);
+            check_error(run, MODEL, what, own.measured, own.expected, own.error, 1e-4, "spheres that follow the flow have a mean square displacement of %.3g of "
+                        "their own: what the flow does to the old place is not taken off as it should be", own.measured);
+        }
+    }
+    json_decref(scene);
+}
+
+/*
+ * Two spheres near contact, within the cell and across a face: their motion against each other is the same. The velocity of an image is that
+ * of the middle of the step, like the velocities that it is compared with; at the end of the step it would be wrong by half a step of the flow's change.
+ */
+void check_stages_pair(struct check_run *run)
+{
+    const json_t *parameters = run->gate_case->parameters;
+    json_t *scene = json_deep_copy(run->gate_case->scene);
+    struct theory_stage stage[STAGES];
+    struct state_row start[2];
+    struct track track[2] = { { 0 } };
+    struct worst w[3] = { WORST_NONE, WORST_NONE, WORST_NONE };
+    struct model m;
+    int at[8];
+    double G[3][3], way;
+    bool good = model_read(run, scene, &m);
+    const size_t stages = read_stages(scene_get(scene, "stages"), stage);
+    const double a = m.radius[0], n[3] = { 0.36, 0.48, 0.8 }, rate = scene_number(parameters, "rate", NAN);
+    theory_driven_flow(stage, stages, 0.0, G, &way);
+    for (int k = 0; k < 8; k++)
+        at[k] = (int)scene_number(parameters, "steps", NAN) / 8 * (k + 1);
+    for (int face = 0; face < 2 && good; face++) {
+        for (int side = 0; side < 2; side++) {
+            start[side] = (struct state_row){ .id = side + 1, .species = 1 };
+            for (int c = 0; c < 3; c++)
+                start[side].x[c] = (face ? 0.0 : 0.5 * m.cell[c][c]) + (side ? 1.0 : -1.0) * a * 1.01 * n[c];
+            apply(G, start[side].x, start[side].u);
+        }
+        good = track_ask(run, face ? "across-faces" : "inside", scene, start, 2, at, 8, &track[face]);
+    }
+    for (size_t s = 0; s < 8 && good; s++)
+        for (size_t c = 0; c < 3; c++) {
+            double x[2], u[2];
+            for (int face = 0; face < 2; face++) {
+                const struct track_point *p = track_at(&track[face], s, 0), *q = track_at(&track[face], s, 1);
+                x[face] = q->x[c] - p->x[c];
+                u[face] = q->u[c] - p->u[c];
+            }
+            worst_see(&w[0], x[1], x[0], a, s);
+            worst_see(&w[1], u[1], u[0], rate * a, s);
+            worst_see(&w[2], track_at(&track[1], s, 0)->w[c], track_at(&track[0], s, 0)->w[c], rate, s);
+        }
+    static const char *const names[3] = { "distance", "relative velocity", "spin" };
+    for (int q = 0; q < 3 && good; q++)
+        check_error(run, INVARIANT, names[q], w[q].measured, w[q].expected, w[q].error, run->gate_case->tolerance,
+                    "in a flow that changes with time a pair across the faces moves otherwise than inside the cell: its %s is %s", names[q], compare(&w[q]));
+    for (int face = 0; face < 2; face++)
+        track_free(&track[face]);
+    json_decref(scene);
+}
+
 void check_stages(struct check_run *run)
 {
     size_t k;
     json_t *drive;
-    json_array_foreach(json_object_get(run->gate_case->parameters, "drives"), k, drive)
+    json_array_foreach(json_object_get(run->gate_case->parameters, "drives"), k, drive) {
         if (!try_drive(run, drive, k + 1))
             return;
+        if (json_object_get(drive, "late"))
+            try_late(run, drive, k + 1);
+    }
 }

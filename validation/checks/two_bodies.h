@@ -57,5 +57,7 @@ void check_trapped_pair(struct check_run *run);
 void check_metamorphic(struct check_run *run);
 void check_sheared_pairs(struct check_run *run);
 void check_observers(struct check_run *run);
+void check_resume(struct check_run *run);
+void check_flat(struct check_run *run);
 
 #endif

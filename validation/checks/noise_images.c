@@ -1,0 +1,59 @@
+/*
+ * Layer 2: the noise of a pair that meets through several faces
+ *
+ * Two spheres half a cell apart, in a cell so short that each feels the other on both sides, through films of the same width. Both films resist
+ * a motion along the line, so both have their own noise, and for sphere 1
+ *
+ *     <F_x^2> = (2 kT/dt) R_xx ,   <T_y^2> = (2 kT/dt) R_yy of spins          R the candidate's own, both films together
+ *
+ * One set of random numbers for both films would double the first (equal pushes add up) and change the second. A ratio near 1 is asked for, by
+ * an interval of four standard errors.
+ */
+#include "noise.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void check_noise_images(struct check_run *run)
+{
+    static const char *const lubrication[1] = { "lubrication" };
+    static const struct { size_t at; const char *name; } watched[3] = { { 0, "force along the line" }, { 1, "force across it" }, { 4, "torque across it" } };
+    struct model m;
+    struct frozen f = { .count = 2, .sizes = 1 };
+    const size_t draws = (size_t)scene_number(run->gate_case->parameters, "draws", 0);
+    char out[PATH_LENGTH];
+    if (!model_read(run, run->gate_case->scene, &m))
+        return;
+    f.size[0] = f.radius[0] = f.radius[1] = m.radius[0];
+    f.species[0] = f.species[1] = 1;
+    for (int k = 0; k < 3; k++) {
+        f.x[0][k] = 0.21 * m.cell[k][k];
+        f.x[1][k] = f.x[0][k] + (k == 0 ? 0.5 * m.cell[0][0] : 0.0);
+    }
+    json_t *scene = frozen_scene(run, &f);
+    const double kT = scene_number(scene, "fluid.kT", NAN), dt = scene_number(scene, "dynamics.verlet.dt", NAN);
+    double *R[1] = { calloc(144, sizeof(double)) }, *draw = NULL;
+    struct state_row row[2];
+    for (size_t i = 0; i < 2; i++) {
+        row[i] = (struct state_row){ .id = (int)i + 1, .species = 1 };
+        memcpy(row[i].x, f.x[i], sizeof row[i].x);
+    }
+    const struct question q = { .protocol = "noise", .scene = scene, .state = row, .states = 2, .draws = draws };
+    if (measure_resistance(run, scene, &f, 1, lubrication, R) && check_ask(run, "draws", &q, out))
+        draw = noise_draws(run, out, "noise_lubrication_noise.npy", draws, &f, sqrt(2.0 * kT / dt));
+    for (size_t k = 0; k < 3 && draw; k++) {
+        double sum = 0.0, squares = 0.0;
+        for (size_t t = 0; t < draws; t++) {
+            const double z = draw[12 * t + watched[k].at] * draw[12 * t + watched[k].at] / R[0][13 * watched[k].at];
+            sum += z;
+            squares += z * z;
+        }
+        const double mean = sum / (double)draws, error = sqrt((squares / (double)draws - mean * mean) / (double)draws);
+        check_interval(run, INVARIANT, watched[k].name, mean, error, 1.0, 0.2, "two films between the same spheres: the variance of the %s is %.4g times what "
+                       "the candidate's own resistance asks for; both draw the same random numbers, or one draws none", watched[k].name, mean);
+    }
+    free(R[0]);
+    free(draw);
+    json_decref(scene);
+}

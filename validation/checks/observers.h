@@ -1,0 +1,45 @@
+/* Layer 6, tables of a run: what their checks share (observers.c, observers_run.c). */
+#ifndef OBSERVERS_CHECK_H
+#define OBSERVERS_CHECK_H
+
+#include "two_bodies.h"
+
+struct near_pair { size_t i, j; double n[3], distance, gap; };
+struct film {
+    struct check_run *run;
+    json_t *scene;
+    struct model m;
+    struct state_row *row;
+    struct track track;
+    struct near_pair **near;        /* of each frame, all images within `range` */
+    size_t count, frames, *nears;
+    int every;
+    double begin;                   /* time of the first frame */
+    double dt, kT, range;
+    char out[PATH_LENGTH];
+};
+
+
+double film_radius(const struct film *f, size_t i);
+/* Velocity and spin without those of the flow. */
+void film_peculiar(const struct film *f, const struct track_point *p, double c[3], double w[3]);
+/* False where the candidate has not written the table (skipped) or it cannot be read (recorded). */
+bool film_table(const struct film *f, const char *file, const char *columns, struct table *t);
+/* The frame of a row whose first column is the step; f->frames where there is none. */
+size_t film_frame(const struct film *f, const struct table *t, size_t row);
+void film_judge(const struct film *f, const char *what, const struct worst *w);
+/* Structural Brownian stress of a frame: shell over the radius, thermal depth. */
+void film_structure(const struct film *f, size_t frame, double shell, double depth, double S[6]);
+double film_depth(const struct film *f);
+/* Kinetic energies by axis, of a species from 1 or of all (0): translation, then rotation. */
+void film_temperatures(const struct film *f, size_t frame, int species, double T[6]);
+
+/* The tables that are written at the end, and those of stresses (observers_run.c). */
+void film_judge_lags(const struct film *f);
+void film_judge_distribution(const struct film *f);
+void film_judge_plane(const struct film *f);
+void film_judge_stress_table(const struct film *f);
+void film_judge_green_kubo(const struct film *f);
+void film_judge_averages(const struct film *f);
+
+#endif

@@ -1,0 +1,407 @@
+/*
+ * Layer 6, tables of a run, second part: those that gather over the run, and the stresses' (observers.c)
+ *
+ *     displacement            <dx^2>, D half the slope between lags        velocity_correlation   <c c>, and its integral by trapezoids
+ *     pair_distribution       g, U = -kT ln g; g in the plane of shear     green_kubo             V/kT times the integral of <S S>
+ *     stress                  strain, eta_r                                averages               means beyond the transient, errors by blocking
+ */
+#include "observers.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* --- over the run --- */
+
+/* Mean of a product over the particles of a species and the origins of a lag: all of them to 16 samples, every 2^level-th beyond. */
+typedef void product_of(const struct film *f, const struct track_point *old, const struct track_point *now, double duration, double out[6]);
+
+static double correlate(const struct film *f, size_t lag, int species, product_of *product, double mean[6])
+{
+    size_t stride = 1;
+    double samples = 0.0, one[6];
+    while (lag > 16 * stride)
+        stride *= 2;
+    memset(mean, 0, 6 * sizeof *mean);
+    for (size_t s = 0; s + lag < f->frames; s += stride)
+        for (size_t i = 0; i < f->count; i++) {
+            if (f->row[i].species != species)
+                continue;
+            product(f, track_at(&f->track, s, i), track_at(&f->track, s + lag, i), (double)lag * f->every * f->dt, one);
+            samples += 1.0;
+            for (int k = 0; k < 6; k++)
+                mean[k] += one[k];
+        }
+    for (int k = 0; k < 6 && samples > 0; k++)
+        mean[k] /= samples;
+    return samples;
+}
+
+static void displaced(const struct film *f, const struct track_point *old, const struct track_point *now, double duration, double out[6])
+{
+    for (int k = 0; k < 3; k++) {
+        double carried = old->x[k];
+        for (int l = 0; l < 3; l++)
+            carried += f->m.gradient[k][l] * duration * old->x[l];
+        const double vorticity = f->m.gradient[(k + 2) % 3][(k + 1) % 3] - f->m.gradient[(k + 1) % 3][(k + 2) % 3];
+        out[k] = gsl_pow_2(now->x[k] - carried);
+        out[3 + k] = gsl_pow_2(now->turn[k] - old->turn[k] - 0.5 * vorticity * duration);
+    }
+}
+
+static void remembered(const struct film *f, const struct track_point *old, const struct track_point *now, double duration, double out[6])
+{
+    double c[2][3], w[2][3];
+    (void)duration;
+    film_peculiar(f, old, c[0], w[0]);
+    film_peculiar(f, now, c[1], w[1]);
+    for (int k = 0; k < 3; k++) {
+        out[k] = c[0][k] * c[1][k];
+        out[3 + k] = w[0][k] * w[1][k];
+    }
+}
+
+/* What a row says beyond the products: D, half the slope since the row before; or the integral by trapezoids since lag 0. */
+static double derived(const struct table *t, size_t r, bool slope, double *integral)
+{
+    const bool first = r == 0 || table_at(t, r, 1) != table_at(t, r - 1, 1);
+    double now = 0.0, before = 0.0;
+    for (size_t k = 3; k < 6; k++) {
+        now += table_at(t, r, k) / 3.0;
+        before += first ? 0.0 : table_at(t, r - 1, k) / 3.0;
+    }
+    const double step = table_at(t, r, 0) - (first ? 0.0 : table_at(t, r - 1, 0));
+    *integral = first ? 0.0 : *integral + 0.5 * (before + now) * step;
+    return slope ? 0.5 * (now - before) / step : *integral;
+}
+
+static void judge_lags(const struct film *f, const char *file, const char *columns, bool slope, product_of *product)
+{
+    struct table t;
+    struct worst w = WORST_NONE, samples = WORST_NONE, last = WORST_NONE;
+    double integral = 0.0, largest = 0.0;
+    if (!film_table(f, file, columns, &t))
+        return;
+    for (size_t r = 0; r < t.rows; r++)
+        largest = fmax(largest, fabs(table_at(&t, r, 9)));
+    for (size_t r = 0; r < t.rows; r++) {
+        worst_see(&last, table_at(&t, r, 9), derived(&t, r, slope, &integral), largest, r);
+        double mean[6], scale[2] = { 0 };
+        const double number = correlate(f, (size_t)lround(table_at(&t, r, 0) / (f->every * f->dt)), (int)table_at(&t, r, 1), product, mean);
+        for (int k = 0; k < 6; k++)
+            scale[k / 3] = fmax(scale[k / 3], fabs(mean[k]));
+        worst_see(&samples, table_at(&t, r, 2), number, 1.0, r);
+        for (size_t k = 0; k < 6; k++)
+            worst_see(&w, table_at(&t, r, 3 + k), mean[k], scale[k / 3], r);
+    }
+    table_free(&t);
+    char what[64];
+    film_judge(f, file, &w);
+    snprintf(what, sizeof what, "%s: samples", file);
+    film_judge(f, what, &samples);
+    snprintf(what, sizeof what, "%s: %s", file, slope ? "D" : "integral");
+    film_judge(f, what, &last);
+}
+
+/* The line at the end of displacement.csv: D_long, half the least-squares slope of each axis over the upper half of the lags. */
+static void judge_late_diffusion(const struct film *f)
+{
+    char path[PATH_LENGTH], line[1024], why[WHY_LENGTH];
+    struct table t;
+    struct worst w = WORST_NONE;
+    path_join(path, f->out, "displacement.csv");
+    FILE *in = fopen(path, "r");
+    if (!in || !table_read(path, "lag,species,msd_x,msd_y,msd_z", &t, why)) {
+        if (in)
+            fclose(in);
+        return;
+    }
+    while (fgets(line, sizeof line, in)) {
+        int species;
+        double brief, said[3], longest = 0.0;
+        if (sscanf(line, "# species %d: D_short %lf D_long %lf %lf %lf", &species, &brief, &said[0], &said[1], &said[2]) != 5)
+            continue;
+        for (size_t r = 0; r < t.rows; r++)
+            longest = table_at(&t, r, 1) == species ? fmax(longest, table_at(&t, r, 0)) : longest;
+        for (size_t k = 0; k < 3; k++) {
+            double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
+            for (size_t r = 0; r < t.rows; r++) {
+                const double lag = table_at(&t, r, 0) / longest, value = table_at(&t, r, 2 + k);
+                if (table_at(&t, r, 1) != species || lag < 0.5)
+                    continue;
+                n += 1.0, x += lag, y += value, xx += lag * lag, xy += lag * value;
+            }
+            const double slope = 0.5 * (xy / n - x / n * y / n) / (xx / n - x / n * x / n) / longest;
+            worst_see(&w, said[k], slope, fmax(fabs(slope), 0.5 * y / n / longest), (size_t)species);
+        }
+    }
+    fclose(in);
+    table_free(&t);
+    if (w.error >= 0.0)
+        check_error(f->run, INVARIANT, "displacement.csv: D_long", w.measured, w.expected, w.error, 1e-6, "displacement.csv: D_long of species %zu is %s; half the "
+                    "slope of its own rows over the upper half of the lags gives that", w.at, compare(&w));
+}
+
+void film_judge_lags(const struct film *f)
+{
+    judge_lags(f, "displacement.csv", "lag,species,samples,msd_x,msd_y,msd_z,turn_x,turn_y,turn_z,D", true, displaced);
+    judge_lags(f, "velocity_correlation.csv", "lag,species,samples,c_x,c_y,c_z,w_x,w_y,w_z,integral", false, remembered);
+    judge_late_diffusion(f);
+}
+
+void film_judge_distribution(const struct film *f)
+{
+    struct table t;
+    struct worst counts = WORST_NONE, g = WORST_NONE, U = WORST_NONE;
+    double of[2] = { 0 };
+    if (!film_table(f, "pair_distribution.csv", "kind$,species_a,species_b,low,high,count,g,U$", &t))
+        return;
+    for (size_t i = 0; i < f->count; i++)
+        of[f->row[i].species - 1] += 1.0;
+    for (size_t r = 0; r < t.rows; r++) {
+        const int a = (int)table_at(&t, r, 1), b = (int)table_at(&t, r, 2);
+        const bool near = strcmp(table_word(&t, r, 0), "near") == 0;
+        const double low = table_at(&t, r, 3), high = table_at(&t, r, 4), touch = near ? f->m.radius[a - 1] + f->m.radius[b - 1] : 0.0;
+        double found = 0.0;
+        for (size_t s = 0; s < f->frames; s++)
+            for (size_t k = 0; k < f->nears[s]; k++) {
+                const struct near_pair *p = &f->near[s][k];
+                const int one = f->row[p->i].species, two = f->row[p->j].species;
+                const double at = near ? p->gap : p->distance;
+                found += ((one == a && two == b) || (one == b && two == a)) && at >= low && at < high;
+            }
+        const double pairs = a == b ? 0.5 * of[a - 1] * (of[a - 1] - 1.0) : of[a - 1] * of[b - 1];
+        const double ideal = pairs / f->m.volume * 4.0 / 3.0 * M_PI * (gsl_pow_3(touch + high) - gsl_pow_3(touch + low)) * (double)f->frames;
+        worst_see(&counts, table_at(&t, r, 5), found, 1.0, r);
+        worst_see(&g, table_at(&t, r, 6), found / ideal, fmax(found / ideal, 1.0), r);
+        if (found > 0.0)
+            worst_see(&U, strtod(table_word(&t, r, 7), NULL), -f->kT * log(found / ideal), f->kT, r);
+    }
+    table_free(&t);
+    film_judge(f, "pair_distribution.csv: counts", &counts);
+    check_error(f->run, INVARIANT, "pair_distribution.csv: g", g.measured, g.expected, g.error, 1e-8, "row %zu: g is %s; the pairs found over those of an "
+                "ideal gas in that shell give that", g.at + 1, compare(&g));      /* written with nine digits */
+    check_error(f->run, INVARIANT, "pair_distribution.csv: U", U.measured, U.expected, U.error, 1e-7, "row %zu: U is %s; -kT ln g gives that", U.at + 1, compare(&U));
+}
+
+/* Both ends of each pair within the slab around the plane of shear, x along y here. */
+void film_judge_plane(const struct film *f)
+{
+    struct table t;
+    struct worst counts = WORST_NONE, g = WORST_NONE;
+    const json_t *p = f->run->gate_case->parameters;
+    const double range = scene_number(p, "tables.pair_distribution.plane.range", NAN), slab = scene_number(p, "tables.pair_distribution.plane.half_width", NAN);
+    const double bins = scene_number(p, "tables.pair_distribution.plane.bins", NAN), width = 2.0 * range / bins, N = (double)f->count;
+    if (!film_table(f, "pair_plane.csv", "r_flow,r_gradient,count,g", &t))
+        return;
+    double *found = calloc(t.rows + 1, sizeof *found);
+    for (size_t s = 0; s < f->frames; s++)
+        for (size_t k = 0; k < f->nears[s]; k++)
+            for (int end = -1; end <= 1; end += 2) {
+                const struct near_pair *pair = &f->near[s][k];
+                const double r = end * pair->distance, column = floor((r * pair->n[0] + range) / width), row = floor((r * pair->n[1] + range) / width);
+                const size_t at = (size_t)(row * bins + column);
+                if (fabs(r * pair->n[2]) < slab && column >= 0 && column < bins && row >= 0 && row < bins && at < t.rows)
+                    found[at] += 1.0;
+            }
+    const double ideal = N * (N - 1.0) / f->m.volume * width * width * 2.0 * slab * (double)f->frames;
+    for (size_t r = 0; r < t.rows; r++) {
+        const size_t row = r / (size_t)bins, column = r % (size_t)bins;
+        worst_see(&counts, table_at(&t, r, 2), found[r], 1.0, r);
+        worst_see(&g, table_at(&t, r, 3), found[r] / ideal, 1.0, r);
+        worst_see(&g, table_at(&t, r, 0), ((double)column + 0.5) * width - range, range, r);
+        worst_see(&g, table_at(&t, r, 1), ((double)row + 0.5) * width - range, range, r);
+    }
+    free(found);
+    table_free(&t);
+    film_judge(f, "pair_plane.csv: counts", &counts);
+    check_error(f->run, INVARIANT, "pair_plane.csv: g", g.measured, g.expected, g.error, 1e-8, "row %zu: the bin or its g is %s; the pairs found over those of an "
+                "ideal gas in the slab give that", g.at + 1, compare(&g));
+}
+
+/* --- stresses --- */
+
+/* The sum over origins without the kinetic and the noise part, as stress.csv gives them: xx, yy, zz, xy, yx of each of its rows. Null: no table. */
+static double (*total_stress(const struct film *f, size_t *rows))[5]
+{
+    static const char *const parts[4] = { "contact_normal", "contact_tangential", "lubrication", "drag" };
+    double (*S)[5] = NULL;
+    for (int k = 0; k < 4; k++) {
+        struct table t;
+        char columns[400];
+        const char *p = parts[k];
+        snprintf(columns, sizeof columns, "%s_xx,%s_yy,%s_zz,%s_xy,%s_yx", p, p, p, p, p);
+        if (!film_table(f, "stress.csv", columns, &t)) {
+            free(S);
+            return NULL;
+        }
+        S = S ? S : calloc(t.rows + 1, sizeof *S);
+        *rows = t.rows;
+        for (size_t r = 0; r < t.rows; r++)
+            for (size_t c = 0; c < 5; c++)
+                S[r][c] += table_at(&t, r, c);
+        table_free(&t);
+    }
+    return S;
+}
+
+void film_judge_stress_table(const struct film *f)
+{
+    struct table t;
+    struct worst strain = WORST_NONE, eta = WORST_NONE;
+    size_t rows = 0;
+    const double rate = f->m.gradient[0][1], unit = f->m.viscosity * rate;
+    double (*S)[5] = rate != 0.0 ? total_stress(f, &rows) : NULL;
+    if (S && film_table(f, "stress.csv", "step,time,strain,eta_r", &t)) {
+        for (size_t r = 0; r < rows && r < t.rows; r++) {
+            worst_see(&strain, table_at(&t, r, 2), fabs(rate) * (table_at(&t, r, 1) - f->begin), 1.0, r);
+            worst_see(&eta, table_at(&t, r, 3), 1.0 + 0.5 * (S[r][3] + S[r][4]) / unit, 1.0, r);
+        }
+        table_free(&t);
+        film_judge(f, "stress.csv: strain", &strain);
+        check_error(f->run, INVARIANT, "stress.csv: eta_r", eta.measured, eta.expected, eta.error, 1e-7, "row %zu: eta_r is %s; 1 and the parts without the kinetic "
+                    "and the Brownian ones give that", eta.at + 1, compare(&eta));
+    }
+    strain = (struct worst)WORST_NONE;
+    if (S && film_table(f, "viscosity.csv", "step,time,strain,rate", &t)) {
+        for (size_t r = 0; r < t.rows; r++) {
+            worst_see(&strain, table_at(&t, r, 2), fabs(rate) * (table_at(&t, r, 1) - f->begin), 1.0, r);
+            worst_see(&strain, table_at(&t, r, 3), rate, fabs(rate), r);
+        }
+        table_free(&t);
+        film_judge(f, "viscosity.csv: strain and rate", &strain);
+    }
+    free(S);
+}
+
+/* At rest: correlations of the structural stress, and V/kT times the integral of their mean. */
+void film_judge_green_kubo(const struct film *f)
+{
+    struct table t;
+    struct worst C = WORST_NONE, eta = WORST_NONE;
+    double scale = 0.0, integral = 0.0;
+    if (!film_table(f, "green_kubo.csv", "lag,samples,C_xy,C_xz,C_yz,eta", &t))
+        return;
+    double (*S)[6] = calloc(f->frames, sizeof *S);
+    for (size_t s = 0; s < f->frames; s++)
+        film_structure(f, s, 0.05, film_depth(f), S[s]);
+    for (size_t r = 0; r < t.rows; r++) {
+        const size_t lag = (size_t)lround(table_at(&t, r, 0) / (f->every * f->dt));
+        size_t stride = 1;
+        double mean[3] = { 0 }, samples = 0.0;
+        while (lag > 16 * stride)
+            stride *= 2;
+        for (size_t s = 0; s + lag < f->frames; s += stride, samples += 1.0)
+            for (int k = 0; k < 3; k++)
+                mean[k] += S[s][3 + k] * S[s + lag][3 + k];
+        for (int k = 0; k < 3; k++)
+            scale = fmax(scale, fabs(mean[k] / samples));
+        for (size_t k = 0; k < 3; k++)
+            worst_see(&C, table_at(&t, r, 2 + k), mean[k] / samples, scale, r);
+        worst_see(&C, table_at(&t, r, 1), samples, 1.0, r);
+        for (size_t k = 2; k < 5 && r > 0; k++)
+            integral += f->m.volume / f->kT * 0.5 * (table_at(&t, r, k) + table_at(&t, r - 1, k)) / 3.0 * (table_at(&t, r, 0) - table_at(&t, r - 1, 0));
+        worst_see(&eta, table_at(&t, r, 5), integral, fmax(fabs(integral), 1e-300), r);
+    }
+    free(S);
+    table_free(&t);
+    film_judge(f, "green_kubo.csv: correlations", &C);
+    film_judge(f, "green_kubo.csv: viscosity", &eta);
+}
+
+/* --- averages --- */
+
+/* Samples to be dropped by MSER-5: of means over five, the first d that make sum (y - mean)^2/(n - d)^2 smallest, at most half of them. */
+static size_t transient(const double *x, size_t count)
+{
+    const size_t batches = count / 5;
+    double least = INFINITY;
+    size_t best = 0;
+    for (size_t d = 0; d <= batches / 2; d++) {
+        double mean = 0.0, squares = 0.0;
+        const double n = (double)(batches - d);
+        for (size_t k = 5 * d; k < 5 * batches; k++)
+            mean += x[k] / (5.0 * n);
+        for (size_t b = d; b < batches; b++)
+            squares += gsl_pow_2((x[5 * b] + x[5 * b + 1] + x[5 * b + 2] + x[5 * b + 3] + x[5 * b + 4]) / 5.0 - mean);
+        if (squares / (n * n) < least * (1.0 - 1e-9)) {
+            least = squares / (n * n);
+            best = d;
+        }
+    }
+    return 5 * best;
+}
+
+/* Flyvbjerg & Petersen: pairwise means until the error no longer rises by more than its uncertainty, with 20 blocks or more; else the largest with 8. */
+static double blocked_error(double *x, size_t count)
+{
+    double largest = 0.0, before = NAN, mean = 0.0;
+    for (size_t k = 0; k < count; k++)
+        mean += x[k] / (double)count;
+    for (size_t m = count; m >= 8; m /= 2) {
+        double squares = 0.0;
+        for (size_t k = 0; k < m; k++)
+            squares += gsl_pow_2(x[k] - mean);
+        const double error = sqrt(squares / ((double)m * ((double)m - 1.0)));
+        if (m >= 20 && error <= before + error / sqrt(2.0 * ((double)m - 1.0)))
+            return fmax(error, before);
+        largest = fmax(largest, error);
+        before = error;
+        for (size_t k = 0; k < m / 2; k++)
+            x[k] = 0.5 * (x[2 * k] + x[2 * k + 1]);
+    }
+    return largest;
+}
+
+/* The quantity of this name at each frame; false: not one that is computed here. */
+static bool series_of(const struct film *f, const char *name, double (*S)[5], double *x)
+{
+    static const char *const names[] = { "shear", "eta_r", "N1", "N2", "pressure", "T", "W", "contacts" };
+    int which = 0;
+    while (which < 8 && strcmp(name, names[which]) != 0)
+        which++;
+    for (size_t s = 0; s < f->frames && which < 8; s++) {
+        double T[6], touching = 0.0;
+        const double shear = 0.5 * (S[s][3] + S[s][4]);
+        film_temperatures(f, s, 0, T);
+        for (size_t k = 0; k < f->nears[s]; k++)
+            touching += f->near[s][k].gap < 0.0;
+        const double value[8] = { shear, 1.0 + shear / (f->m.viscosity * f->m.gradient[0][1]), S[s][0] - S[s][1], S[s][1] - S[s][2],
+                                  -(S[s][0] + S[s][1] + S[s][2]) / 3.0, (T[0] + T[1] + T[2]) / 3.0, (T[3] + T[4] + T[5]) / 3.0, 2.0 * touching / (double)f->count };
+        x[s] = value[which];
+    }
+    return which < 8;
+}
+
+void film_judge_averages(const struct film *f)
+{
+    struct table t;
+    struct worst means = WORST_NONE, errors = WORST_NONE, dropped = WORST_NONE;
+    size_t rows = 0;
+    if (!film_table(f, "averages.csv", "quantity$,mean,error,samples,discarded", &t))
+        return;
+    double (*S)[5] = total_stress(f, &rows), *x = calloc(f->frames, sizeof *x);
+    for (size_t r = 0; r < t.rows && S && rows == f->frames; r++) {
+        if (!series_of(f, table_word(&t, r, 0), S, x))
+            continue;
+        const size_t first = transient(x, f->frames);
+        double mean = 0.0, size = 0.0;
+        for (size_t s = first; s < f->frames; s++) {
+            mean += x[s] / (double)(f->frames - first);
+            size += fabs(x[s]) / (double)(f->frames - first);
+        }
+        const double error = blocked_error(x + first, f->frames - first);
+        worst_see(&dropped, table_at(&t, r, 4), (double)first, 1.0, r);
+        worst_see(&means, table_at(&t, r, 1), mean, size, r);
+        worst_see(&errors, table_at(&t, r, 2), error, error, r);
+    }
+    free(S);
+    free(x);
+    table_free(&t);
+    film_judge(f, "averages.csv: samples dropped", &dropped);
+    check_error(f->run, INVARIANT, "averages.csv: means", means.measured, means.expected, means.error, 1e-7, "row %zu: the mean is %s; the frames beyond the "
+                "transient give that", means.at + 1, compare(&means));
+    check_error(f->run, INVARIANT, "averages.csv: errors", errors.measured, errors.expected, errors.error, 6e-3, "row %zu: the error is %s; blocking of the frames "
+                "gives that", errors.at + 1, compare(&errors));          /* written with three digits */
+}
+
