@@ -194,6 +194,9 @@ audit: ## golden vectors and closed forms of the gate, recomputed in quadruple p
 verdicts: ## docs/verdicts.md against the cases and the results of the last make validate
 	@python3 tools/docs/verdicts.py --run
 
+findings: all ## what is wrong in stock LAMMPS: the smallest decks, and the gate's own words, beside docs/findings.md
+	@B=$B python3 tools/lammps/findings.py
+
 work-precision: all ## seconds for 1 % of the pairs near contact, by integrator and step (about 5 minutes; keeps finished rows)
 	@tools/work-precision.sh $B
 
@@ -204,5 +207,5 @@ clean: ## remove build/
 	rm -rf $B
 
 .PHONY: all setup validate test lines coverage sanitize memcheck adapters scenes faults calibrate bench scaling golden engine engine-cost second-opinion ci-files \
-	suite-manifest vectors audit verdicts work-precision help clean FORCE
+	suite-manifest findings vectors audit verdicts work-precision help clean FORCE
 -include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS) $(ENGINE) $(GOLDEN) $(AUDIT) tools/compare/checkpoints.c))

@@ -1,4 +1,4 @@
-/* The solver as a candidate of the gate: one case folder in, its numbers out. docs/formats.md has the formats. */
+/* The solver as a candidate of the gate: one case folder in, its numbers out. docs/adapter.md has the formats. */
 #ifndef EVALUATE_H
 #define EVALUATE_H
 

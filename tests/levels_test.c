@@ -61,7 +61,7 @@ static void level_b(void)
     expect(judge("", SOME "--level B"), 0, "6 passed, 0 failed, 0 skipped");
     check_true(strstr(said, "entry level B") != NULL, "the first line names the level");
     expect(judge("sh tests/altered.sh 's/.viscosity.: .*/\\\"viscosity\\\":0.71/' ", "--case drag --level B"), 1, "1 failed");
-    expect(judge("sh tests/altered.sh 's/.inner_gap.: .*,/\\\"inner_gap\\\":0.0011,/' ", "--case lubrication-forces --level B"), 1, "the force on 1 is");
+    expect(judge("sh tests/altered.sh 's/.inner_gap.: .*,/\\\"inner_gap\\\":0.0011,/' ", "--case lubrication-forces --level B"), 1, "force along n of lubrication");
     expect(judge("sh tests/altered.sh 's/.tangential_damping.: .*,/\\\"tangential_damping\\\":0,/' ", "--case crowd-dashpot --level B"), 1, "contact on sphere");
     expect(judge("", "--case contact-dashpot,friction-pairs --level B"), 77, "the force on held or driven spheres, which steps do not show (level B)");
 }

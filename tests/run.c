@@ -14,7 +14,7 @@
 #define SUITES(each)                                                                                                     \
     each(box) each(packing) each(dynamics) each(force) each(scene) each(theory) each(theory_motion) each(theory_pair)    \
     each(statistics) each(tables) each(gate) each(collision) each(checkpoint) each(stages)    \
-    each(observers) each(blocks) each(faults) each(export) each(sweeps) each(published_shear) each(engine) each(verdict) each(golden) each(kept) each(levels) each(contract)
+    each(observers) each(blocks) each(faults) each(export) each(sweeps) each(published_shear) each(engine) each(verdict) each(golden) each(kept) each(levels) each(pattern) each(contract)
 #define DECLARE(name) extern const struct suite name##_suite;
 #define ADDRESS(name) &name##_suite,
 

@@ -202,6 +202,51 @@ static void accepted_failures_from_outside(void)
     says(said, "known[0]: there is no case 'dragg'");
 }
 
+/* --- order --- */
+
+/* Whether `first` stands before `second` in a file of the work folder, from the last `after` on. */
+static bool in_order(const char *file, const char *after, const char *first, const char *second)
+{
+    char path[PATH_LENGTH], *text = calloc(1, 1 << 18);
+    path_join(path, folder, file);
+    FILE *in = fopen(path, "r");
+    if (in) {
+        text[fread(text, 1, (1 << 18) - 1, in)] = '\0';
+        fclose(in);
+    }
+    const char *from = strstr(text, after), *a = from ? strstr(from, first) : NULL, *b = from ? strstr(from, second) : NULL;
+    const bool good = a && b && a < b;
+    free(text);
+    return good;
+}
+
+static void invariants_stand_first(void)
+{
+    struct check_run run = { 0 };
+    json_t *words = json_array();
+    const struct gate_case one = { .name = "case", .about = "about", .layer = LAYER_PAIR, .needs = words, .flags = words };
+    check_error(&run, MODEL, "coefficient", 1, 2, 1e6, 0.1, "the model is wrong");
+    check_error(&run, INVARIANT, "third law", 1, 2, 1, 0.1, "an invariant is broken");
+    struct finished_case done = { .gate_case = &one, .results = run.results, .verdict = VERDICT_FAIL };
+    const struct provenance p = { .gate_version = "1", .candidate = "c", .level = "A", .precision = "double", .date = "2026-01-01" };
+    char path[PATH_LENGTH], why[WHY_LENGTH] = "";
+    path_join(path, folder, "order.xml");
+    check_true(report_junit(path, &p, &done, 1, why), why);
+    check_true(in_order("order.xml", "<failure", "message=\"an invariant is broken", "the model is wrong"), "JUnit: message");
+    check_true(in_order("order.xml", "\">FAIL", "an invariant is broken", "the model is wrong"), "JUnit: text");
+    path_join(path, folder, "order.html");
+    check_true(report_html(path, &p, &done, 1, "validation/flags.json", why), why);
+    check_true(in_order("order.html", "What is wrong", "an invariant is broken", "the model is wrong"), "page: what is wrong");
+    check_true(in_order("order.html", "<tbody>", "third law", "coefficient"), "page: table");
+    path_join(path, folder, "order.md");
+    FILE *file = fopen(path, "w");
+    github_summary(file, &p, &done, 1);
+    fclose(file);
+    check_true(in_order("order.md", "What is wrong", "an invariant is broken", "the model is wrong"), "GitHub");
+    finished_free(&done);
+    json_decref(words);
+}
+
 /* --- GitHub --- */
 
 static void github_is_told_at_most_ten_times(void)
@@ -323,6 +368,25 @@ static void a_term_without_quantity_is_a_mistake(void)
     json_decref(one.terms);
 }
 
+/* A state upstream carries the day on which it was read, or says that it is not known. */
+static void every_flag_says_what_is_known_upstream(void)
+{
+    static const char *const honest[] = { "(thread as stored, read 20", "not known", "no report known to us", "known to us on 20", "measured by us",
+                                          "nothing to mend" };
+    const char *flag;
+    json_t *entry, *flags = json_load_file("validation/flags.json", JSON_REJECT_DUPLICATES, NULL);
+    check_true(json_object_size(flags) > 0, "flags.json");
+    json_object_foreach(flags, flag, entry)
+    {
+        const char *upstream = json_string_value(json_object_get(entry, "upstream"));
+        bool said = false;
+        for (size_t k = 0; k < sizeof honest / sizeof *honest; k++)
+            said = said || (upstream && strstr(upstream, honest[k]));
+        check_true(said && json_object_size(entry) == 4, flag);
+    }
+    json_decref(flags);
+}
+
 static void first(void)
 {
     check_true(mkdtemp(folder) != NULL, "a folder to work in");
@@ -341,8 +405,10 @@ static const struct unit_test tests[] = {
     { "known failures", known_failures },
     { "what is not accepted stays red", what_is_not_accepted_stays_red },
     { "accepted failures from outside", accepted_failures_from_outside },
+    { "invariants stand first", invariants_stand_first },
     { "GitHub is told at most ten times", github_is_told_at_most_ten_times },
     { "GitHub from outside", github_from_outside },
+    { "every flag says what is known upstream", every_flag_says_what_is_known_upstream },
     { "every term is covered", every_term_is_covered },
     { "coverage says what was judged", coverage_says_what_was_judged },
     { "a term without quantity is a mistake", a_term_without_quantity_is_a_mistake },

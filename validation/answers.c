@@ -1,5 +1,5 @@
 /*
- * The tables of docs/formats.md as checks use them: states and contacts written for a candidate, its forces and stresses
+ * The tables of docs/adapter.md as checks use them: states and contacts written for a candidate, its forces and stresses
  * read back and indexed. Completeness is checked here, so that no check ever judges a number that was not written.
  */
 #include "tables.h"

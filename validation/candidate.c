@@ -68,6 +68,7 @@ bool candidate_floods(const struct candidate *c, const char *out_dir, const char
 void candidate_limits(const struct candidate *c)
 {
     const struct rlimit file = { .rlim_cur = c->bytes, .rlim_max = c->bytes }, core = { 0, 0 };
+    signal(SIGXFSZ, SIG_DFL);           /* whoever started us may ignore it, and a candidate would inherit that */
     setrlimit(RLIMIT_FSIZE, &file);
     setrlimit(RLIMIT_CORE, &core);
 }

@@ -1,5 +1,5 @@
 /*
- * gate: judges any program that computes suspension physics, through files (docs/formats.md). It never links the solver.
+ * gate: judges any program that computes suspension physics, through files (docs/adapter.md). It never links the solver.
  *
  * This file is the command line: which cases, in which order, against which candidate, and what is written where.
  */
@@ -88,7 +88,7 @@ static void find_suite(char folder[PATH_LENGTH])
     const ssize_t n = readlink("/proc/self/exe", program, sizeof program - 1);
     snprintf(folder, PATH_LENGTH, "validation");
     for (ssize_t k = n; k > 0; k--) {
-        if (program[k] != '/' && k != n)
+        if (k != n && program[k] != '/')
             continue;
         program[k] = '\0';
         path_join(guess, program, "validation/cases");
@@ -364,8 +364,9 @@ static int explain(const char *flag, const char *suite_dir)
     if (entry && !cases_load(folder, &suite, why))
         code = usage("%s", why);
     else if (entry) {
-        printf("%s\n\n  mistake   %s\n  effect    %s\n  seen      %s\n  cases    ", flag, json_string_value(json_object_get(entry, "mistake")),
-               json_string_value(json_object_get(entry, "effect")), json_string_value(json_object_get(entry, "seen")));
+        printf("%s\n\n  mistake   %s\n  effect    %s\n  seen      %s\n  upstream  %s\n  cases    ", flag, json_string_value(json_object_get(entry, "mistake")),
+               json_string_value(json_object_get(entry, "effect")), json_string_value(json_object_get(entry, "seen")),
+               json_string_value(json_object_get(entry, "upstream")));
         for (size_t k = 0; k < suite.count; k++)
             if (case_lists(suite.item[k].flags, flag))
                 printf(" %s", suite.item[k].name);

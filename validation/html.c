@@ -289,6 +289,8 @@ static void flags(FILE *f, const struct finished_case *done, size_t count, const
         markup_text(f, json_string_value(json_object_get(entry, "effect")));
         fputs(" <i>Seen in:</i> ", f);
         markup_text(f, json_string_value(json_object_get(entry, "seen")));
+        fputs(" <i>State upstream:</i> ", f);
+        markup_text(f, json_string_value(json_object_get(entry, "upstream")));
         fputs("</dd>\n", f);
     }
     fputs("</dl></section>\n", f);

@@ -114,9 +114,10 @@ static void testcase(FILE *file, const struct finished_case *done)
         fprintf(file, "    <failure type=\"%s\" message=\"", v == VERDICT_FAIL ? "fail" : "inconclusive");
         message(file, done);
         fputs("\">", file);
-        for (size_t k = 0; k < done->results.count; k++)
-            if (done->results.item[k].verdict != VERDICT_PASS)
-                result_line(file, &done->results.item[k]);
+        for (enum judgement j = INVARIANT; j <= MODEL; j++)
+            for (size_t k = 0; k < done->results.count; k++)
+                if (done->results.item[k].judgement == j && done->results.item[k].verdict != VERDICT_PASS)
+                    result_line(file, &done->results.item[k]);
         fputs("</failure>\n", file);
     }
     fputs("    <system-out>", file);

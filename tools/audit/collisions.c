@@ -90,10 +90,10 @@ quad damping_ratio_of(quad restitution, bool clip)
 
 static void audit_head_on(void)
 {
-    static const double ratio[] = { 0.02, 0.3, 0.8, 1.0, 1.9 }, wanted[] = { 0.97, 0.35, 0.5 };
+    static const double ratio[] = { 0.0, 0.02, 0.3, 0.8, 1.0, 1.9 }, wanted[] = { 0.97, 0.35, 0.5 };
     const double mass[2] = { 0.83, 1.9 };
     audit_quantity("speed ratio of a damping ratio", "oscillator solved until the spheres part", 1e-13, "exp of a rounded exponent", "theory_restitution");
-    for (int k = 0; k < 5; k++)
+    for (int k = 0; k < 6; k++)
         for (int clip = 0; clip < 2; clip++)
             if (clip || ratio[k] < 1.0)
                 audit_see(theory_restitution(ratio[k], clip), restitution_of(ratio[k], clip), theory_restitution(ratio[k], clip), clip ? "clip" : "allow");

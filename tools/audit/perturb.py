@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Is the audit seen to fail? Each number written in validation/theory is made wrong by one part in 1e9, one at a time, in a copy, and the areas of the
-audit that should see it are run. Prints what was seen and what was not; numbers that only bound a loop or a step, or switch between two forms that agree there, must not be.
+audit that should see it are run. Prints how many were seen, and those that were not. What cannot be seen: bounds of a loop or a step, thresholds between two forms
+that agree there, the word -1 for "no friction", a common velocity that drops out, the two ends of Simpson's rule.
 
 Usage: perturb.py BUILD [FILE.c ...]    (after `make audit`; all files without motion: about 3 minutes of one core; motion: 20 s for each number)
 """

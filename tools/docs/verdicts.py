@@ -97,7 +97,7 @@ def case_lines(case, results, old, caught, reasons):
         lines += [""] + table(results)
     else:
         start = next((k for k, line in enumerate(old) if line.startswith("| quantities")), None)
-        lines += [""] + (old[start:] if start is not None else ["measured: not run yet"])
+        lines += [""] + (old[start:] if start is not None else ["measured: no run of this case was at hand when the page was made; its quantities follow with the next"])
     while lines[-1] == "":
         lines.pop()
     return lines + [""]

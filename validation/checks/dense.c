@@ -3,6 +3,7 @@
  */
 #include "dense.h"
 #include "sheared_point.h"
+#include "../offline.h"
 #include "../packing.h"
 
 #include <math.h>
@@ -63,6 +64,12 @@ bool dense_ask_both(struct check_run *run, const char *name, const struct dense_
     if (!check_ask(run, name, &q, out[0]))
         return false;
     const double after = run->candidate_seconds, between = children_seconds();
+    if (offline_waits(own)) {           /* no answer yet: nothing will be judged, and the reference need not be run */
+        memcpy(out[1], out[0], PATH_LENGTH);
+        return true;
+    }
+    reference.server = NULL;            /* the reference is always started here: the candidate is not asked in its stead */
+    reference.offline = NULL;
     reference.command = dense_reference();
     snprintf(label, sizeof label, "reference-%s", name);
     run->candidate = &reference;
@@ -110,7 +117,7 @@ bool dense_snapshots(struct check_run *run, const char *out, const struct dense_
     struct table t;
     double *frame[3] = { calloc(3 * s->count, sizeof **frame), calloc(3 * s->count, sizeof **frame), calloc(3 * s->count, sizeof **frame) };
     path_join(path, out, "trajectory.csv");
-    const bool memory = frame[0] && frame[1] && frame[2], read = memory && table_read(path, "step,time,id,x,y,z,ux,uy,uz,wx,wy,wz", &t, why);
+    const bool memory = frame[0] && frame[1] && frame[2], read = memory && table_read(path, "step,time,id,x,y,z,ux?,uy?,uz?,wx?,wy?,wz?", &t, why);
     size_t in_frame = 0, frames = 0;
     for (size_t r = 0; read && r < t.rows; r++) {
         const double id = table_at(&t, r, 2), time = table_at(&t, r, 1);

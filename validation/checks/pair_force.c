@@ -180,8 +180,9 @@ static void split_stress(const struct pair_state *p, const double force[3], bool
         }
 }
 
-static bool see_stress(struct check_run *run, struct seen *s, const struct model *m, bool contact, const struct pair_book *book,
-                       const struct pair_answer *a)
+/* `own`: patterns of the stress over F (x) r of the candidate's own force, normal and tangential. */
+static bool see_stress(struct check_run *run, struct seen *s, struct pattern own[2], const struct model *m, bool contact,
+                       const struct pair_book *book, const struct pair_answer *a)
 {
     static const char *const origin[2][2] = { { "lubrication", NULL }, { "contact_normal", "contact_tangential" } };
     for (int o = 0; o < 2 && origin[contact][o]; o++) {
@@ -198,6 +199,7 @@ static bool see_stress(struct check_run *run, struct seen *s, const struct model
             pair_geometry(p, n, &r);
             split_stress(p, forces_at(&a->forces, k, contact ? "contact" : "lubrication", 1), contact, part);
             worst_see_vector(&s->own_stress[o], stress + 9 * k, part[o], 9, e.force_scale * r, k);
+            pattern_see(&own[o], stress + 9 * k, part[o], 9, e.force_scale * r, p->s[1].radius / p->s[0].radius, p->xi, NULL, NULL);
             split_stress(p, e.pair.force[0], contact, part);
             worst_see_vector(&s->stress[o], stress + 9 * k, part[o], 9, e.force_scale * r, k);
         }
@@ -277,7 +279,7 @@ static void judge_pattern(struct check_run *run, const struct model *m, const st
 }
 
 static void judge_all(struct check_run *run, const struct model *m, const struct pair_book *book, const struct pair_answer *a,
-                      const char *force, const struct seen *s, bool contact)
+                      const char *force, const struct seen *s, const struct pattern own_stress[2], bool contact)
 {
     judge(run, book, INVARIANT, "third law", &s->third_law, "the force on 2 is not minus the force on 1");
     judge(run, book, INVARIANT, "torque balance", &s->balance,
@@ -288,10 +290,13 @@ static void judge_all(struct check_run *run, const struct model *m, const struct
     if (contact)
         judge(run, book, INVARIANT, "Coulomb cap", &s->cap, "the tangential force exceeds friction times the normal force");
     judge(run, book, INVARIANT, "range", &s->range, "there is a force beyond the range");
-    judge(run, book, INVARIANT, contact ? "normal stress from own forces" : "stress from own forces", &s->own_stress[0],
-          "the stress is not F (x) r / V of the candidate's own force");
-    judge(run, book, INVARIANT, "tangential stress from own forces", &s->own_stress[1],
-          "the tangential stress is not F_t (x) r / V of the candidate's own force");
+    for (int part = 0; part < 2; part++) {
+        char fault[2048];
+        snprintf(fault, sizeof fault, "the %sstress is not F%s (x) r / V of the candidate's own force, it is %s", part ? "tangential " : "",
+                 part ? "_t" : "", pattern_words(&own_stress[part]));
+        judge(run, book, INVARIANT, part ? "tangential stress from own forces" : contact ? "normal stress from own forces" : "stress from own forces",
+              &s->own_stress[part], fault);
+    }
     for (int part = 0; part < 4; part++)
         judge_pattern(run, m, book, a, force, contact, part, part < 2 ? &s->force[part] : &s->torque[part - 2]);
     judge(run, book, MODEL, "torque residual", &s->residual, "T_1 + T_2 + r x F_2 is not what the declared lever leaves");
@@ -313,6 +318,9 @@ void pair_forces(struct check_run *run)
     fill_book(run, &m, contact, &book);
     if (book_ask(run, "pairs", run->gate_case->scene, &book, wanted, &answer)) {
         struct seen s;
+        struct pattern own_stress[2];
+        pattern_start(&own_stress[0], run->gate_case->tolerance);
+        pattern_start(&own_stress[1], run->gate_case->tolerance);
         for (size_t k = 0; k < sizeof s / sizeof(struct worst); k++)
             ((struct worst *)&s)[k] = (struct worst)WORST_NONE;
         for (size_t k = 0; k < book.count; k++) {
@@ -329,8 +337,8 @@ void pair_forces(struct check_run *run)
                 worst_see_vector(&s.total, total + 3, own[side] + 3, 3, e.torque_scale, k);
             }
         }
-        if (see_stress(run, &s, &m, contact, &book, &answer))
-            judge_all(run, &m, &book, &answer, force, &s, contact);
+        if (see_stress(run, &s, own_stress, &m, contact, &book, &answer))
+            judge_all(run, &m, &book, &answer, force, &s, own_stress, contact);
     }
     forces_free(&answer.forces);
     book_free(&book);

@@ -203,8 +203,8 @@ void bodies_judge(struct check_run *run, const char *label, const struct compari
                                        compare(&of->extrapolated));
         result_notes(r, "largest error at dt, dt/2, dt/4: %.3g, %.3g, %.3g; extrapolated: %.3g", of->at[0], of->at[1], of->at[2],
                      of->extrapolated.error);
-        for (int k = 1; k < REFINEMENTS; k++)      /* below the tolerance there is nothing left to halve */
-            if (of->at[k - 1] > run->gate_case->tolerance && of->at[k] / of->at[k - 1] > ratio) {
+        for (int k = 1; k < REFINEMENTS; k++)      /* below the tolerance, or declared rounding, there is nothing left to halve */
+            if (of->at[k - 1] > run->gate_case->tolerance + run->allowance && of->at[k] / of->at[k - 1] > ratio) {
                 ratio = of->at[k] / of->at[k - 1];
                 slowest = q;
             }

@@ -8,7 +8,8 @@ folder `run` beside its `case`, or DIR/<name in case.json>/run:
   stress.csv       `step` and per origin nine columns <origin>_xx ... <origin>_zz in tension, or six of pressure, <origin>_pxx pyy pzz pxy pxz
                    pyz, as codes print them. Origins: docs/adapter.md.
 
-The first frame is the start, whatever its TIMESTEP. Time, flow and lattice come from the scene: LAMMPS's cell lags by a step in its dumps.
+The first frame is the start, whatever its TIMESTEP. Time, flow and lattice come from the scene: in LAMMPS the cell that forces
+see and the cell in the dump differ by a step (docs/lammps.md).
 """
 import csv
 import json
@@ -95,7 +96,7 @@ class Path:
         x = [row[k] for k in ("x", "y", "z")] if "x" in row else [row[k] for k in ("xu", "yu", "zu")]
         lattice = flow.lattice(time)
         back, counted = inverse(lattice), [0.0] * 3
-        if "ix" in row:             # flags count vectors of the dump's own cell: whole numbers of ours, if it is a step late too
+        if "ix" in row:             # flags count vectors of the dump's own cell, each a whole number of ours but for that step
             own = [[round(v) for v in matrix(back, column)] for column in zip(*cell)]
             counted = matrix(list(zip(*own)), [row["ix"], row["iy"], row["iz"]])
         first = self.time is None

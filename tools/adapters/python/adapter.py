@@ -106,7 +106,7 @@ class Answer:
 
 
 def answer_steps(q, out):
-    answer = Answer(out, ["state", "step"], ["state", "step"])
+    answer = Answer(out, ["state", "step"], ["state"])
     states, contacts = {}, {}
     for row in table(os.path.join(q.folder, q.case["states"])):
         states.setdefault(row["state"], []).append(row)
@@ -117,7 +117,7 @@ def answer_steps(q, out):
         s = q.spheres(rows, contacts.get(state, ()))
         answer.frame((state, 0), rows, s)
         if q.case.get("stress"):
-            answer.stress((state, 0), s)
+            answer.stress((state,), s)
         for step in range(1, q.case["steps"] + 1):
             s.step(q.start_time + step * q.dt)
             answer.frame((state, step), rows, s)
