@@ -264,7 +264,7 @@ void check_stages_pair(struct check_run *run)
         at[k] = (int)scene_number(parameters, "steps", NAN) / 8 * (k + 1);
     for (int face = 0; face < 2 && good; face++) {
         for (int side = 0; side < 2; side++) {
-            start[side] = (struct state_row){ .id = side + 1, .species = 1 };
+            start[side] = (struct state_row){ .id = side + 1, .species = m.species > 1 ? side + 1 : 1 };
             for (int c = 0; c < 3; c++)
                 start[side].x[c] = (face ? 0.0 : 0.5 * m.cell[c][c]) + (side ? 1.0 : -1.0) * a * 1.01 * n[c];
             apply(G, start[side].x, start[side].u);
