@@ -8,7 +8,7 @@ set ylabel 'η_r = viscosity / fluid viscosity'
 set key top left
 has(word) = strstrt(strcol('point').' ', word.' ') > 0
 is(quantity) = strcol('quantity') eq quantity
-repelled() = strstrt(strcol('point'), 'A/kT') > 0
+repelled(d) = strstrt(strcol('point'), 'A/kT') > 0
 row(mu, ok) = (is('viscosity') && has('mu '.mu) && ok ? 1 : NaN)
 contact = '< cat viscosities-contact-table.csv && grep -v -e "^#" -e "^point," viscosities-contact-named-table.csv'
 brownian = '< (cat viscosities-brownian-50-table.csv; cat viscosities-brownian-45-table.csv viscosities-brownian-named-table.csv viscosities-repulsion-table.csv | grep -v -e "^#" -e "^point,") 2>/dev/null'
@@ -33,9 +33,9 @@ series = "'phi 0.45|0|1' 'phi 0.45|0.5|2' 'phi 0.50|0|3' 'phi 0.50|0.5|4'"
 phi_of(s) = s[1:strstrt(s,'|')-1]
 mu_of(s) = s[strstrt(s,'|')+1:strlen(s)-2]
 colour(s) = int(s[strlen(s):*])
-plot for [s in series] brownian using (column('x')*row(mu_of(s), has(phi_of(s)) && !repelled())):'candidate':'candidate_error' with yerrorbars pt 7 ps 0.7 lc colour(s) title 'shear, '.phi_of(s).' μ '.mu_of(s), \
-     for [s in series] brownian using (1.12*column('x')*row(mu_of(s), has(phi_of(s)) && !repelled())):'reference':'reference_error' with yerrorbars pt 6 ps 1.3 lc colour(s) title 'LAMMPS', \
-     brownian using (column('x')*row('0.5', has('phi 0.50') && repelled())):'candidate':'candidate_error' with yerrorbars pt 5 ps 0.7 lc 5 title 'shear, phi 0.50 μ 0.5, repulsion 100 kT', \
-     brownian using (1.12*column('x')*row('0.5', has('phi 0.50') && repelled())):'reference':'reference_error' with yerrorbars pt 4 ps 1.3 lc 5 title 'LAMMPS', \
+plot for [s in series] brownian using (column('x')*row(mu_of(s), has(phi_of(s)) && !repelled(0))):'candidate':'candidate_error' with yerrorbars pt 7 ps 0.7 lc colour(s) title 'shear, '.phi_of(s).' μ '.mu_of(s), \
+     for [s in series] brownian using (1.12*column('x')*row(mu_of(s), has(phi_of(s)) && !repelled(0))):'reference':'reference_error' with yerrorbars pt 6 ps 1.3 lc colour(s) title 'LAMMPS', \
+     brownian using (column('x')*row('0.5', has('phi 0.50') && repelled(0))):'candidate':'candidate_error' with yerrorbars pt 5 ps 0.7 lc 5 title 'shear, phi 0.50 μ 0.5, repulsion 100 kT', \
+     brownian using (1.12*column('x')*row('0.5', has('phi 0.50') && repelled(0))):'reference':'reference_error' with yerrorbars pt 4 ps 1.3 lc 5 title 'LAMMPS', \
      [7e3:1.4e4] fit(0.45, 0.642) lc 3 dt 3 notitle, [7e3:1.4e4] fit(0.50, 0.642) lc 3 notitle, [0.12:0.25] fit(0.45, 0.587) lc 3 dt 3 title 'Li, no friction, φ 0.45', [0.12:0.25] fit(0.50, 0.587) lc 3 title 'φ 0.50'
 unset multiplot
