@@ -164,10 +164,9 @@ scaling: all ## time of a step against the number of spheres, 1e2 to 1e5 (expone
 
 VISCOSITIES := $(shell cd validation/cases/6-dense && echo viscosities-* | tr ' ' ',')
 golden: all ## sheared viscosities, code against code: hours of two cores, kept row by row in golden/viscosities; goes on where it stopped
-	$B/gate run --candidate "$B/shear --evaluate" --tier full --case $(VISCOSITIES) --jobs $(JOBS) --keep golden/viscosities --work $B/golden-cases --report $B/golden-report
-	@golden/viscosities/page.py golden/viscosities docs/viscosities.md
-	@cd golden/viscosities && gnuplot plot.gp
-	@echo "golden: $$(grep -c ',viscosity,' golden/viscosities/*-table.csv | awk -F: '{ n += $$2 } END { print n }') rows agree, see golden/viscosities and docs/viscosities.md"
+	@code=0; $B/gate run --candidate "$B/shear --evaluate" --tier full --case $(VISCOSITIES) --jobs $(JOBS) --keep golden/viscosities --work $B/golden-cases --report $B/golden-report || code=$$?; \
+	golden/viscosities/page.py golden/viscosities docs/viscosities.md && (cd golden/viscosities && gnuplot plot.gp) && \
+	echo "golden: $$(grep -h ',viscosity,' golden/viscosities/*-table.csv | wc -l) rows computed, $$(cat validation/cases/6-dense/viscosities-*/case.json | grep -c '"dear"') listed with their cost; verdicts above, exit code $$code"; exit $$code
 
 engine: all $B/unit-tests ## shear-lammps against shear, pathwise on 1, 2 and 4 ranks; restart; broken engines must be seen
 	@tools/engine/measure.sh $B
