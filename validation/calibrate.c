@@ -6,7 +6,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { LINE_LENGTH = 1 << 16, FIXED = 4 };      /* offset, seconds, failed, inconclusive */
 
@@ -24,11 +23,17 @@ static void column_name(char *text, size_t room, const char *case_name, const ch
             *c = ';';
 }
 
+/* Who made the rows that follow. */
+static void write_builds(FILE *file, const struct provenance *p)
+{
+    fprintf(file, "# gate %s, candidate %s (%s)\n", p->gate_version, p->candidate_hash, p->candidate);
+}
+
 static void write_header(FILE *file, const struct provenance *p, const struct finished_case *done, size_t count)
 {
     char name[WHY_LENGTH];
-    fprintf(file, "# gate %s, suite %s, candidate %s (%s)\n# first p-value of every statistical result of the fast tier, by seed offset\n",
-            p->gate_version, p->suite_hash, p->candidate_hash, p->candidate);
+    fprintf(file, "# statistical cases %s\n# first p-value of every statistical result of the fast tier, by seed offset\n", p->suite_hash);
+    write_builds(file, p);
     fprintf(file, "offset,seconds,failed,inconclusive");
     for (size_t k = 0; k < count; k++)
         for (size_t r = 0; r < done[k].results.count; r++)
@@ -67,56 +72,62 @@ static void write_row(FILE *file, const char *header, unsigned offset, double se
     free(names);
 }
 
-/* The header (empty if there is none yet) and the last offset in the file; false if it was made by another suite or candidate. */
-static bool where_it_ends(const char *path, const struct provenance *p, char *header, unsigned *last, char why[WHY_LENGTH])
+/* Where a table ends: the line that names the columns (empty if there is none yet), the last offset, whether this build made the last rows. */
+struct end { char *header; unsigned last; bool same_build; };
+
+/* False if the table was made by other cases. */
+static bool where_it_ends(const char *path, const struct provenance *p, struct end *end, char why[WHY_LENGTH])
 {
-    char *line = malloc(LINE_LENGTH), mark[200];
+    char *line = malloc(LINE_LENGTH), cases[80], build[200];
     FILE *file = fopen(path, "r");
     bool mine = true;
-    *last = 0;
-    *header = '\0';
-    snprintf(mark, sizeof mark, "suite %s, candidate %s ", p->suite_hash, p->candidate_hash);
+    end->last = 0;
+    *end->header = '\0';
+    snprintf(cases, sizeof cases, "# statistical cases %s\n", p->suite_hash);
+    snprintf(build, sizeof build, "# gate %s, candidate %s ", p->gate_version, p->candidate_hash);
     if (file && line && fgets(line, LINE_LENGTH, file)) {
-        mine = strstr(line, mark) != NULL;
+        mine = strcmp(line, cases) == 0;
         while (fgets(line, LINE_LENGTH, file)) {
             if (*line == 'o')
-                strcpy(header, line);
-            else if (*line != '#' && strchr(line, '\n'))
-                *last = (unsigned)strtoul(line, NULL, 10);
+                strcpy(end->header, line);
+            else if (*line == '#')
+                end->same_build = strstr(line, build) == line;
+            else if (strchr(line, '\n'))
+                end->last = (unsigned)strtoul(line, NULL, 10);
         }
     }
     if (file)
         fclose(file);
     free(line);
-    return mine || why_not(why, "%s was made by another suite or candidate; remove it or name another file", path);
+    return mine || why_not(why, "%s was made by other statistical cases; remove it or name another file", path);
 }
 
 bool calibrate_run(struct run_plan *plan, const struct provenance *p, unsigned seeds, const char *path, char why[WHY_LENGTH])
 {
-    unsigned last, unused;
-    char *header = calloc(LINE_LENGTH, 1);
-    if (!header || !where_it_ends(path, p, header, &last, why)) {
-        free(header);
+    struct end end = { .header = calloc(LINE_LENGTH, 1) };
+    if (!end.header || !where_it_ends(path, p, &end, why)) {
+        free(end.header);
         return false;
     }
     FILE *file = fopen(path, "a");
     if (!file) {
-        free(header);
+        free(end.header);
         return why_not(why, "%s cannot be written", path);
     }
-    for (unsigned offset = last + 1; offset <= seeds; offset++) {
+    if (*end.header && !end.same_build && end.last < seeds)
+        write_builds(file, p);
+    for (unsigned offset = end.last + 1; offset <= seeds; offset++) {
         struct finished_case *done = calloc(plan->count, sizeof *done);
-        struct timespec start, end;
-        clock_gettime(CLOCK_MONOTONIC, &start);
+        const double start = candidate_now();
         plan->seed_offset = offset;
         run_all(plan, done, quiet);
-        clock_gettime(CLOCK_MONOTONIC, &end);
-        if (!*header) {
+        if (!*end.header) {
+            struct end begun = { .header = end.header };
             write_header(file, p, done, plan->count);
             fflush(file);
-            where_it_ends(path, p, header, &unused, why);
+            where_it_ends(path, p, &begun, why);
         }
-        write_row(file, header, offset, (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec), done, plan->count);
+        write_row(file, end.header, offset, candidate_now() - start, done, plan->count);
         const struct tally t = report_tally(done, plan->count);
         printf("seed %u of %u: %d passed, %d failed (%d inconclusive)\n", offset, seeds, t.passed, t.failed, t.inconclusive);
         fflush(stdout);
@@ -124,7 +135,7 @@ bool calibrate_run(struct run_plan *plan, const struct provenance *p, unsigned s
             results_free(&done[k].results);
         free(done);
     }
-    free(header);
+    free(end.header);
     return fclose(file) == 0 || why_not(why, "%s was not written in full", path);
 }
 

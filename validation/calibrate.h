@@ -2,14 +2,15 @@
  * False alarms, counted: the statistical checks with many seeds on a candidate that is right.
  *
  * A row per seed offset is appended to a CSV file as it ends: verdicts and the first p-value of every statistical result. A file of the
- * same suite and candidate is continued where it ends; another one is refused. The summary is read from the file alone.
+ * same statistical cases is continued where it ends, with a line that names the candidate wherever that is another build; a file of other
+ * cases is refused. The summary is read from the file alone.
  */
 #ifndef CALIBRATE_H
 #define CALIBRATE_H
 
 #include "run.h"
 
-/* Offsets 1 to `seeds`. False with a reason: the file belongs to another suite or candidate, or cannot be written. */
+/* Offsets 1 to `seeds`. False with a reason: the file belongs to other cases, or cannot be written. */
 bool calibrate_run(struct run_plan *plan, const struct provenance *p, unsigned seeds, const char *file, char why[WHY_LENGTH]);
 
 /*

@@ -317,6 +317,7 @@ static int run_cases(const struct options *o, const struct suite_of_cases *suite
         return usage("there is no program '%.*s' to run as the candidate", (int)strcspn(o->candidate, " \t"), o->candidate);
     }
     if (o->calibrating) {
+        suite_hash(chosen, count, p.suite_hash);
         const bool good = calibrate_run(&plan, &p, o->seeds, o->table, why);
         free(work);
         known_free(&known);

@@ -34,6 +34,9 @@ bool suite_fits(const struct suite_of_cases *suite, const json_t *manifest, char
 bool suite_choose(struct suite_of_cases *suite, const char *suite_dir, const char *asked, struct suite_choice *choice,
                   char why[WHY_LENGTH]);
 
+/* One number for what these cases ask and how strictly, in this order. */
+void suite_hash(const struct gate_case *const *gate_case, size_t count, char hash[17]);
+
 /* Writes suite-GATE_SUITE.json: done once when a version is released, `make suite-manifest`. */
 bool suite_freeze(const struct suite_of_cases *suite, const char *suite_dir, char why[WHY_LENGTH]);
 

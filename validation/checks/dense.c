@@ -58,6 +58,7 @@ bool dense_ask_both(struct check_run *run, const char *name, const struct dense_
 {
     const struct candidate *own = run->candidate;
     struct candidate reference = *own;
+    struct capabilities whole;          /* what the candidate lacks or rounds is not said of the reference */
     const struct question q = { .protocol = "run", .scene = s->scene, .state = s->row, .states = s->count };
     const double seconds = run->candidate_seconds, before = children_seconds();
     char label[64];
@@ -70,6 +71,8 @@ bool dense_ask_both(struct check_run *run, const char *name, const struct dense_
     }
     reference.server = NULL;            /* the reference is always started here: the candidate is not asked in its stead */
     reference.offline = NULL;
+    capabilities_default(&whole);
+    reference.capabilities = &whole;
     reference.command = dense_reference();
     snprintf(label, sizeof label, "reference-%s", name);
     run->candidate = &reference;
