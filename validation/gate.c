@@ -180,6 +180,26 @@ static bool wanted(const struct options *o, const struct gate_case *c)
            && (!o->layers || in_list(o->layers, layer_name(c->layer)) || in_list(o->layers, number));
 }
 
+/* A word that no case names, and those that some do. */
+static int check_needs(const char *needs, const struct suite_of_cases *suite)
+{
+    json_t *words = json_object();
+    char list[1024] = "";
+    for (size_t k = 0; k < suite->count; k++) {
+        size_t n;
+        json_t *word;
+        json_array_foreach(suite->item[k].needs, n, word)
+            json_object_set_new(words, json_string_value(word), json_true());
+    }
+    const bool known = json_object_get(words, needs) != NULL;
+    const char *word;
+    json_t *value;
+    json_object_foreach(words, word, value)
+        snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", *list ? ", " : "", word);
+    json_decref(words);
+    return known ? 0 : usage("--needs '%s': no case names this as what it is about; some name %s", needs, list);
+}
+
 /* Every name in --layer and --case must mean something: a typing error must not make an empty run look like a pass. */
 static int check_names(const struct options *o, const struct suite_of_cases *suite)
 {
@@ -198,7 +218,7 @@ static int check_names(const struct options *o, const struct suite_of_cases *sui
         if (!known)
             return usage("there is no case '%s'; see gate list --tier full", word);
     }
-    return 0;
+    return o->needs ? check_needs(o->needs, suite) : 0;
 }
 
 /* Layers without a chosen case, and how many cases were left out of the others. */
@@ -457,7 +477,7 @@ int main(int argc, char **argv)
         return usage("%s", why);
     if (code != 0)
         return code;
-    if (!offline && strcmp(verb, "list") != 0 && strcmp(verb, "freeze") != 0 && !o.candidate)
+    if (!offline && strcmp(verb, "list") != 0 && strcmp(verb, "freeze") != 0 && (!o.candidate || o.candidate[strspn(o.candidate, " \t")] == '\0'))
         return usage("%s needs --candidate COMMAND", verb);
     if (o.calibrating && (!o.seeds || !o.table))
         return usage("calibrate needs --seeds N and --table FILE");

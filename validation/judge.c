@@ -7,6 +7,7 @@
 #include "offline.h"
 #include "precision.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -67,6 +68,34 @@ static void look_for_conventions(struct check_run *run, const struct check *chec
     }
 }
 
+/*
+ * Where all that is wrong is wrong by less than physics would be, the first sentence says what else it may be. Checks that allow more than rounding are
+ * none of these.
+ */
+static void look_for_few_digits(struct check_run *run)
+{
+    struct result *first = NULL;
+    double largest = 0;
+    for (size_t k = 0; k < run->results.count; k++) {
+        struct result *r = &run->results.item[k];
+        if (r->verdict != VERDICT_FAIL)
+            continue;
+        if (!(r->error < FEW_DIGITS) || !(r->tolerance < 1e-8))
+            return;
+        largest = fmax(largest, r->error);
+        if (!first || r->judgement < first->judgement)
+            first = r;
+    }
+    if (!first)
+        return;
+    const struct capabilities *c = run->candidate->capabilities;
+    char text[3 * WHY_LENGTH];
+    snprintf(text, sizeof text, "all of this case is right to %.1g: numbers written with few digits (17 keep a double), a constant such as pi, or single "
+             "precision%s. Here: %s", largest, c && c->roundoff > 0 ? "" : ", which is declared as \"precision\" (docs/adapter.md)", first->sentence);
+    free(first->sentence);
+    first->sentence = strdup(text);
+}
+
 static bool has_needs(struct check_run *run)
 {
     size_t k;
@@ -94,6 +123,7 @@ void judge_case(struct check_run *run, const struct check *check, int p_values, 
     else
         check_judge(run, check, p_values, seed_offset);
     look_for_conventions(run, check);
+    look_for_few_digits(run);
     run->gate_case = c;
     json_decref(adapted.scene);
     json_decref(adapted.parameters);
