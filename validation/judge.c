@@ -69,29 +69,27 @@ static void look_for_conventions(struct check_run *run, const struct check *chec
 }
 
 /*
- * Where all that is wrong is wrong by less than physics would be, the first sentence says what else it may be. Checks that allow more than rounding are
- * none of these.
+ * Of frozen pairs something is wrong by less than physics would make it: the first sentence says what it may be. Other errors beside it can have the same
+ * cause, at gaps so close to the end of a force that rounded positions lie beyond.
  */
 static void look_for_few_digits(struct check_run *run)
 {
+    const struct capabilities *c = run->candidate->capabilities;
     struct result *first = NULL;
-    double largest = 0;
+    double least = FEW_DIGITS;
     for (size_t k = 0; k < run->results.count; k++) {
         struct result *r = &run->results.item[k];
-        if (r->verdict != VERDICT_FAIL)
+        if (r->verdict != VERDICT_FAIL || isnan(r->error))
             continue;
-        if (!(r->error < FEW_DIGITS) || !(r->tolerance < 1e-8))
-            return;
-        largest = fmax(largest, r->error);
+        least = r->tolerance < 1e-8 ? fmin(least, r->error) : least;
         if (!first || r->judgement < first->judgement)
             first = r;
     }
-    if (!first)
+    if (run->gate_case->layer != LAYER_PAIR || !first || !(least < FEW_DIGITS))
         return;
-    const struct capabilities *c = run->candidate->capabilities;
     char text[3 * WHY_LENGTH];
-    snprintf(text, sizeof text, "all of this case is right to %.1g: numbers written with few digits (17 keep a double), a constant such as pi, or single "
-             "precision%s. Here: %s", largest, c && c->roundoff > 0 ? "" : ", which is declared as \"precision\" (docs/adapter.md)", first->sentence);
+    snprintf(text, sizeof text, "an error of only %.1g is among what is wrong: numbers written with few digits (17 keep a double), a constant such as pi, or single "
+             "precision%s? Here: %s", least, c && c->roundoff > 0 ? "" : ", which is declared as \"precision\" (docs/adapter.md)", first->sentence);
     free(first->sentence);
     first->sentence = strdup(text);
 }
