@@ -275,6 +275,7 @@ static void the_program_from_outside(void)
     check_true(strcmp(last, "0 passed, 0 failed, 2 skipped\n") == 0, last);
     check_close(gate("run --candidate true --layer pair --case drag", last), 1, 0, "nothing written");
     check_true(strcmp(last, "0 passed, 1 failed, 0 skipped\n") == 0, last);
+    check_close(gate("run --candidate true --case drag --patience 0", last), 2, 0, "no patience");
     check_close(gate("list --tier full", last), 0, 0, "list");
 }
 

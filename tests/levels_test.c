@@ -108,6 +108,11 @@ static void few_digits(void)
     expect(judge("sh tests/rounded.sh 8 ", options), 0, "4 passed, 0 failed, 0 skipped");
 }
 
+static void patience_is_a_factor(void)
+{
+    expect(gate("run --candidate \"sh -c 'sleep 30' it\" --case drag --patience 0.01"), 1, "killed after 0.2 s");
+}
+
 static void conventions_are_named(void)
 {
     static const char lever[] = "sh tests/altered.sh 's/.lever.: .radius./\\\"lever\\\": \\\"contact\\\"/' ";
@@ -242,6 +247,7 @@ static const struct unit_test tests[] = {
     { "level C", level_c },
     { "undeclared physics is skipped", undeclared_physics_is_skipped },
     { "few digits", few_digits },
+    { "patience is a factor", patience_is_a_factor },
     { "conventions are named", conventions_are_named },
     { "export, run elsewhere, judge", export_run_judge },
     { "a first alarm is inconclusive", a_first_alarm_is_inconclusive },

@@ -44,6 +44,7 @@ static const char help[] =
     "  --tier TIER           fast (default), standard, full; each includes the ones before it\n"
     "  --jobs N              worker processes (default 1)\n"
     "  --stop-after N        end the run once N cases have failed\n"
+    "  --patience FACTOR     time limits of the cases times this (default 1), for a slow candidate or machine\n"
     "  --suite VERSION       the suite as it was frozen, for example " GATE_SUITE ": newer cases only warn, and a case that has\n"
     "                        changed since is an error (default: the cases as they are)\n"
     "  --known FILE          failures that are accepted, with reason and expiry (docs/known.schema.json)\n"
@@ -64,6 +65,7 @@ struct options {
     char suite_dir[PATH_LENGTH];
     enum tier tier;
     int jobs, stop_after;
+    double patience;
     unsigned seed_offset, seeds;
     bool calibrating;
 };
@@ -148,6 +150,11 @@ static int parse_option(struct options *o, const char *name, const char *value)
         if (!whole_number(value, 1, 1000, &n))
             return usage("--stop-after '%s' is no whole number from 1 to 1000", value);
         o->stop_after = (int)n;
+    } else if (strcmp(name, "--patience") == 0) {
+        char *end;
+        o->patience = strtod(value, &end);
+        if (end == value || *end || !(o->patience > 0 && o->patience <= 1e6))
+            return usage("--patience '%s' is no number above 0", value);
     } else if (strcmp(name, "--seed-offset") == 0) {
         if (!whole_number(value, 0, 2147483647, &n))
             return usage("--seed-offset '%s' is no whole number from 0 to 2147483647", value);
@@ -319,7 +326,7 @@ static int run_cases(const struct options *o, const struct suite_of_cases *suite
         return usage("%s", why);
     work = realpath(o->work, NULL); /* absolute: a candidate may change its folder */
     struct run_plan plan = { .gate_case = chosen, .count = count, .work = work, .jobs = o->jobs, .p_values = suite->p_values,
-                             .seed_offset = o->seed_offset, .stop_after = o->stop_after, .keep = o->keep, .known = &known };
+                             .seed_offset = o->seed_offset, .stop_after = o->stop_after, .patience = o->patience, .keep = o->keep, .known = &known };
     struct capabilities capabilities;
     if (!capabilities_choose(o->capabilities, o->candidate, o->level, &capabilities, why)) {
         free(work);
@@ -445,7 +452,7 @@ int main(int argc, char **argv)
         && strcmp(verb, "freeze") != 0 && strcmp(verb, "export") != 0 && strcmp(verb, "judge") != 0)
         return usage("%s'%s'; see gate --help", *verb ? "unknown command " : "say `run`, `list`, `explain`, `export`, `judge`, `calibrate` or `freeze`, not ", verb);
 
-    struct options o = { .report = "build/report", .work = "build/cases", .jobs = 1,
+    struct options o = { .report = "build/report", .work = "build/cases", .jobs = 1, .patience = 1,
                          .calibrating = strcmp(verb, "calibrate") == 0 };
     find_suite(o.suite_dir);
     if (strcmp(verb, "explain") == 0)
