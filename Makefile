@@ -103,7 +103,7 @@ $B/obj/tools/audit/%.o: tools/audit/%.c
 $B/audit: $(call objects,$(AUDIT) $(wildcard validation/theory/*.c))
 	$(CC) $(CFLAGS) $^ -o $@ -ljansson -lgsl -lgslcblas -lquadmath -lm
 
-$B/lammps-candidate: tools/lammps/candidate.py $B/lammps_stock.py $B/lammps_reference.py
+$B/lammps-candidate: tools/lammps/candidate.py $B/lammps_stock.py $B/lammps_own.py $B/lammps_reference.py
 	@mkdir -p $(@D)
 	install -m 755 $< $@
 

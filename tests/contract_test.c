@@ -394,6 +394,7 @@ static void steps_are_read_whole(void)
     check_true(steps_start(folder, &q, 1, 2, (const double(*)[6])v, 0, why), why);
     v[1][2] = 1e-3;
     check_true(!steps_start(folder, &q, 1, 2, (const double(*)[6])v, 0, why) && strstr(why, "state 0, step 0, id 2 does not have the velocity"), why);
+    check_true(strstr(why, "too few digits") != NULL, "and why that may be");
     free(v);
     snprintf(text, sizeof text, "%s%s", header, rows);
     written("trajectory.csv", text);

@@ -68,6 +68,8 @@ static void deterministic_and_interval_verdicts(void)
     check_true(results_verdict(&run.results) == VERDICT_PASS, "pass");
     check_true(check_skip(&run, "s", "not there")->verdict == VERDICT_SKIP, "skip");
     check_true(results_verdict(&run.results) == VERDICT_PASS, "a skip beside a pass");
+    check_true(strcmp(results_worst(&run.results)->what, "a") == 0, "what was not judged is not the worst");
+    check_true(results_not_judged(&run.results) == 1, "but counted");
     check_true(check_interval(&run, MODEL, "b", 1.02, 0.005, 1, 0.05, "-")->verdict == VERDICT_PASS, "interval inside");
     check_true(check_interval(&run, MODEL, "c", 1.02, 0.010, 1, 0.05, "-")->verdict == VERDICT_INCONCLUSIVE, "across the edge");
     check_true(results_verdict(&run.results) == VERDICT_INCONCLUSIVE, "inconclusive");
@@ -118,6 +120,7 @@ static enum candidate_outcome run_shell(const char *script, struct candidate_ans
     char command[1024], out[PATH_LENGTH], why[WHY_LENGTH];
     snprintf(command, sizeof command, "sh -c '%s' it", script);
     path_join(out, folder, "out");
+    folder_remove(out);
     folder_make(out, why);
     const struct candidate c = { .command = command, .seconds = 0.5, .bytes = 1 << 20 };
     candidate_run(&c, folder, out, answer);
@@ -138,6 +141,33 @@ static void candidates_may_do_anything(void)
                    || a.outcome == CANDIDATE_HUNG, "one large file");
     check_true(run_shell("for k in 1 2 3 4; do head -c 500000 /dev/zero >\"$2\"/$k; done; sleep 0.45; sleep 9", &a)
                    == CANDIDATE_FLOODED, "many small files");
+}
+
+/* A candidate that is a script around the program under test: what became of that program is said, not only an exit code. */
+static void what_became_of_a_wrapped_program_is_said(void)
+{
+    struct candidate_answer a;
+    check_true(run_shell("head -c 4000000 /dev/zero >\"$2\"/flood; exit $?", &a) == CANDIDATE_FLOODED, "ended by the limit of a file, which a shell makes exit code 153");
+    check_true(run_shell("trap \"\" XFSZ; head -c 4000000 /dev/zero >\"$2\"/flood", &a) == CANDIDATE_FLOODED, "stopped at the limit by an error in writing");
+    check_true(run_shell("sh -c \"kill -SEGV \\$\\$\"; exit $?", &a) == CANDIDATE_FAILED && strstr(a.message, "ended by signal 11"), a.message);
+    check_true(run_shell("echo Error: no file; echo version 1; exit 1", &a) == CANDIDATE_FAILED && strstr(a.message, "exit code 1: Error: no file"), a.message);
+    check_true(strstr(a.message, "out.log)") != NULL, "where the rest of what it said is");
+    check_true(run_shell("echo no error here; echo the reason; exit 77", &a) == CANDIDATE_UNSUPPORTED && strstr(a.message, "77): the reason"), a.message);
+}
+
+static void a_script_is_part_of_the_hash(void)
+{
+    char path[PATH_LENGTH], command[PATH_LENGTH + 8], before[17], after[17];
+    const struct candidate c = { .command = command };
+    path_join(path, folder, "adapter.txt");
+    snprintf(command, sizeof command, "sh -e %s", path);
+    for (int k = 0; k < 2; k++) {
+        FILE *file = fopen(path, "w");
+        fputs(k ? "exit 1" : "exit 0", file);
+        fclose(file);
+        check_true(candidate_hash(&c, k ? after : before), "there is a program");
+    }
+    check_true(strcmp(before, after) != 0, "another script, another hash");
 }
 
 static void helpers_of_a_candidate_die_with_it(void)
@@ -237,11 +267,15 @@ static void the_program_from_outside(void)
     check_true(strstr(last, "there is no tier 'slow'") != NULL, last);
     check_close(gate("run --candidate true --jobs 0", last), 2, 0, "no jobs");
     check_close(gate("run --candidate true --case no-such-case", last), 2, 0, "unknown case");
+    check_close(gate("run --candidate \" \"", last), 2, 0, "a candidate without a name");
+    check_close(gate("run --candidate true --needs frictoin", last), 2, 0, "unknown physics");
+    check_true(strstr(last, "some name") && strstr(last, "friction-laws"), last);
     check_close(gate("run --candidate /no/such/program --layer pair", last), 2, 0, "unknown program");
     check_close(gate("run --candidate \"sh -c 'exit 77'\" --layer 1 --case drag,units-drag", last), 77, 0, "nothing supported");
     check_true(strcmp(last, "0 passed, 0 failed, 2 skipped\n") == 0, last);
     check_close(gate("run --candidate true --layer pair --case drag", last), 1, 0, "nothing written");
     check_true(strcmp(last, "0 passed, 1 failed, 0 skipped\n") == 0, last);
+    check_close(gate("run --candidate true --case drag --patience 0", last), 2, 0, "no patience");
     check_close(gate("list --tier full", last), 0, 0, "list");
 }
 
@@ -281,6 +315,8 @@ static const struct unit_test tests[] = {
     { "results survive JSON", results_survive_json },
     { "exit codes", exit_codes },
     { "candidates may do anything", candidates_may_do_anything },
+    { "what became of a wrapped program is said", what_became_of_a_wrapped_program_is_said },
+    { "a script is part of the hash", a_script_is_part_of_the_hash },
     { "helpers of a candidate die with it", helpers_of_a_candidate_die_with_it },
     { "what is no answer is recorded", what_is_no_answer_is_recorded },
     { "JUnit is valid whatever was said", junit_is_valid_whatever_was_said },

@@ -82,6 +82,11 @@ static void undeclared_physics_is_skipped(void)
     snprintf(options, sizeof options, "--case drag,lubrication-forces %s", capabilities("\"physics\": [\"drag\", \"drag-torque\", \"shear\", \"tilted\", \"unequal\"]"));
     expect(judge("", options), 0, "1 passed, 0 failed, 1 skipped");
     check_true(strstr(said, "needs \"superposed-shear\"") != NULL, "single questions of a case are skipped as well");
+    check_true(strstr(said, "           1 of ") && strstr(said, " not judged\n"), "how many were not");
+    check_true(strstr(said, "passed, but for what was not judged: drag (1 of ") != NULL, "and once more at the end");
+    check_true(strstr(said, "x and z along y    ") == NULL, "a question that was not asked is not the worst of those that were");
+    snprintf(options, sizeof options, "--case friction-plain %s", capabilities("\"physics\": [\"contact\", \"friction\", \"histories\", \"unequal\", \"stress\"]"));
+    expect(judge("", options), 0, "1 passed, 0 failed, 0 skipped");
     snprintf(options, sizeof options, "--case drag %s", capabilities("\"physik\": []"));
     expect(judge("", options), 2, "unknown key \"physik\"; did you mean \"physics\"?");
 }
@@ -94,9 +99,18 @@ static void few_digits(void)
     expect(judge("sh tests/rounded.sh 7 ", options), 0, "4 passed, 0 failed, 0 skipped");
     check_true(strstr(said, "7 digits precision") != NULL, "the first line names the precision");
     expect(judge("sh tests/rounded.sh 7 ", cases), 1, "0 passed, 4 failed");
+    check_true(strstr(said, "an error of only ") != NULL, "what few digits look like");
+    check_true(strstr(said, "of it too ") && !strstr(said, ", 1 of it"), "numbers that differ are printed so that they do");
+    check_true(strstr(said, "[Coulomb cap]") != NULL, "the name of the quantity");
+    check_true(strstr(said, " \n") == NULL, "no blank at the end of a line");
     expect(judge("sh tests/altered.sh 's/.inner_gap.: .*,/\\\"inner_gap\\\":0.0011,/' sh tests/rounded.sh 7 ", options), 1, "2 passed, 2 failed");
     snprintf(options, sizeof options, "%s %s", cases, capabilities("\"precision\": \"float\""));
     expect(judge("sh tests/rounded.sh 8 ", options), 0, "4 passed, 0 failed, 0 skipped");
+}
+
+static void patience_is_a_factor(void)
+{
+    expect(gate("run --candidate \"sh -c 'sleep 30' it\" --case drag --patience 0.01"), 1, "killed after 0.2 s");
 }
 
 static void conventions_are_named(void)
@@ -233,6 +247,7 @@ static const struct unit_test tests[] = {
     { "level C", level_c },
     { "undeclared physics is skipped", undeclared_physics_is_skipped },
     { "few digits", few_digits },
+    { "patience is a factor", patience_is_a_factor },
     { "conventions are named", conventions_are_named },
     { "export, run elsewhere, judge", export_run_judge },
     { "a first alarm is inconclusive", a_first_alarm_is_inconclusive },

@@ -1,4 +1,5 @@
 /* Words for kinds of mistake (validation/checks/pair_pattern.h): each kind made by hand over size ratios, gaps and directions. */
+#include "checks/dense.h"
 #include "checks/pair_pattern.h"
 #include "suite.h"
 
@@ -33,6 +34,8 @@ static double clamped(double ratio, double xi) { return right(ratio, xi) * (xi <
 static double outside(double ratio, double xi) { return right(ratio, xi) * (xi > 0.01 ? 1 + xi : 1); }
 static double scaled_gap(double ratio, double xi) { return ratio == 1 ? 1 : 1 + 0.1 * ratio * xi; }
 
+static double rounded(double ratio, double xi) { return right(ratio, xi) * (1 + 3e-7); }
+
 static void expect(mistake *made, bool turned, const char *said)
 {
     const char *text = words(made, turned);
@@ -45,6 +48,7 @@ static void kinds_of_mistake(void)
 {
     expect(right, false, "");
     expect(factor, false, "0.42 of expected at every gap and size ratio: a factor");
+    expect(rounded, false, "right to 2e-07");
     expect(sign, false, "the opposite sign everywhere");
     expect(nothing, false, "nothing at all: the term is missing");
     expect(radius, false, "0.1429 to 5 of expected, as the power -1 of a_2/a_1: a radius, or a power of one; right for equal radii, so an index, or a size ratio");
@@ -55,6 +59,12 @@ static void kinds_of_mistake(void)
     expect(right, true, "in another direction than expected: a term is missing or added, or a vector is wrong");
 }
 
-static const struct unit_test tests[] = { { "kinds of mistake", kinds_of_mistake }, { NULL, NULL } };
+static void how_far_apart_paths_are(void)
+{
+    check_true(strstr(dense_path_likely(0.3), "is a force, not a step") != NULL, "a third of a radius");
+    check_true(strstr(dense_path_likely(0.002), "a cell that lags one step") != NULL, "rate times edge times dt");
+}
+
+static const struct unit_test tests[] = { { "kinds of mistake", kinds_of_mistake }, { "how far apart paths are", how_far_apart_paths_are }, { NULL, NULL } };
 
 const struct suite pattern_suite = { "pattern", tests };

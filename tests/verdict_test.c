@@ -124,6 +124,8 @@ static void invent(struct invented *i, double error)
     i->done = (struct finished_case){ .gate_case = &i->one, .results = run.results, .verdict = results_verdict(&run.results) };
 }
 
+static char remark[WHY_LENGTH];         /* what `settled` said */
+
 /* The word for the case after this file of accepted failures; "refused" where it cannot be read. */
 static const char *settled(const char *entry, double error, enum verdict *counts)
 {
@@ -139,6 +141,7 @@ static const char *settled(const char *entry, double error, enum verdict *counts
         known_settle(&list, &i.done);
         word = finished_word(&i.done);
         *counts = finished_counts(&i.done);
+        snprintf(remark, sizeof remark, "%s", i.done.remark ? i.done.remark : "");
     }
     known_free(&list);
     finished_free(&i.done);
@@ -157,6 +160,7 @@ static void known_failures(void)
     check_true(strcmp(settled(right, 1, &v), "HEALED") == 0 && v == VERDICT_FAIL, "another quantity than the one that fails");
     const char *up = "{\"case\": \"case\", \"quantity\": \"up*\", \"reason\": \"r\", \"expires\": \"2027-01-01\"}";
     check_true(strcmp(settled(up, 1, &v), "HEALED") == 0 && v == VERDICT_FAIL, "a quantity that does not exist");
+    check_true(strstr(remark, "what is wrong is called 'left: force'") != NULL, remark);
     const char *old = "{\"case\": \"case\", \"reason\": \"r\", \"expires\": \"2026-11-27\"}";
     check_true(strcmp(settled(old, 1, &v), "EXPIRED") == 0 && v == VERDICT_FAIL, "expired is red");
     check_true(strcmp(settled(old, 0, &v), "EXPIRED") == 0 && v == VERDICT_FAIL, "expired, though it passes");
@@ -311,6 +315,8 @@ static void every_term_is_covered(void)
     for (size_t k = 0; k < c.rows; k++) {
         check_true(c.row[k].layer[0].cases > 0, c.row[k].term);
         check_true(strcmp(coverage_word(&c.row[k].layer[0]), "not judged") == 0, "nothing was asked");
+        for (size_t j = 0; j + 1 < k; j++)
+            check_true(strcmp(c.row[j].group, c.row[k].group) != 0 || strcmp(c.row[k - 1].group, c.row[k].group) == 0, "a group stands together");
     }
     coverage_free(&c);
     cases_free(&suite);

@@ -59,10 +59,16 @@ static size_t folder_size(const char *path)
     return folder_bytes;
 }
 
+/* A file that has come to the limit exactly was stopped there by candidate_limits. */
 bool candidate_floods(const struct candidate *c, const char *out_dir, const char *log)
 {
     struct stat said;
-    return folder_size(out_dir) > c->bytes || (stat(log, &said) == 0 && (size_t)said.st_size > c->bytes);
+    return folder_size(out_dir) >= c->bytes || (stat(log, &said) == 0 && (size_t)said.st_size >= c->bytes);
+}
+
+bool candidate_failed(const struct candidate_answer *a)
+{
+    return a->outcome == CANDIDATE_FAILED || a->outcome == CANDIDATE_CRASHED;
 }
 
 void candidate_limits(const struct candidate *c)
@@ -135,17 +141,47 @@ static void read_tail(const char *log, char *said, size_t room)
     fclose(file);
 }
 
+static bool names_an_error(const char *line, size_t n)
+{
+    static const char *const words[] = { "error", "Error", "ERROR" };
+    for (size_t at = 0; at + 5 <= n; at++)
+        for (size_t k = 0; k < sizeof words / sizeof *words; k++)
+            if (strncmp(line + at, words[k], 5) == 0)
+                return true;
+    return false;
+}
+
+/* The last line that is not empty; of a failure the last that speaks of an error, which some interpreters print before a version or a stack. */
+static const char *telling_line(const char *said, bool failure, int *length)
+{
+    const char *found = said + strlen(said), *last = found;
+    for (const char *line = said; *line;) {
+        const size_t n = strcspn(line, "\n");
+        last = n ? line : last;
+        if (failure && names_an_error(line, n))
+            found = line;
+        line += n + (line[n] == '\n');
+    }
+    found = *found ? found : last;
+    *length = (int)strcspn(found, "\n");
+    return found;
+}
+
+/* A shell that sees a program of its own die ends with 128 and the number of the signal. */
+static const char *signal_of_code(int code)
+{
+    static char text[80];
+    text[0] = '\0';
+    if (code > 128 && code <= 128 + SIGXFSZ)
+        snprintf(text, sizeof text, " (a program that it started was ended by signal %d, %s)", code - 128, strsignal(code - 128));
+    return text;
+}
+
 void candidate_explain(const struct candidate *c, const char *log, struct candidate_answer *a)
 {
+    int n;
     read_tail(log, a->said, sizeof a->said);
-    const char *last = strrchr(a->said, '\n');
-    if (last && last[1] == '\0') { /* the last line that says something */
-        while (last > a->said && last[-1] != '\n')
-            last--;
-    } else {
-        last = last ? last + 1 : a->said;
-    }
-    const int n = (int)strcspn(last, "\n");
+    const char *last = telling_line(a->said, a->outcome == CANDIDATE_FAILED, &n);
     switch (a->outcome) {
     case CANDIDATE_OK:
         snprintf(a->message, sizeof a->message, "answered");
@@ -154,8 +190,10 @@ void candidate_explain(const struct candidate *c, const char *log, struct candid
         snprintf(a->message, sizeof a->message, "does not support this (exit code 77)%s%.*s", n ? ": " : "", n, last);
         break;
     case CANDIDATE_FAILED:
-        snprintf(a->message, sizeof a->message, "candidate ended with exit code %d%s%s%.*s", a->detail,
-                 a->detail == 127 ? " (command not found?)" : "", n ? ": " : "", n, last);
+        snprintf(a->message, sizeof a->message, "candidate ended with exit code %d%s%s%.*s%s%s%s", a->detail,
+                 a->detail == 127 ? " (command not found?)" : signal_of_code(a->detail), n ? ": " : "", n, last,
+                 n < (int)strlen(a->said) - 1 ? " (all that it said: " : "", n < (int)strlen(a->said) - 1 ? log : "",
+                 n < (int)strlen(a->said) - 1 ? ")" : "");
         break;
     case CANDIDATE_CRASHED:
         snprintf(a->message, sizeof a->message, "candidate crashed with signal %d (%s)", a->detail, strsignal(a->detail));
@@ -196,6 +234,8 @@ void candidate_run(const struct candidate *c, const char *case_dir, const char *
         answer->detail = WEXITSTATUS(status);
         answer->outcome = answer->detail == 77 ? CANDIDATE_UNSUPPORTED : CANDIDATE_FAILED;
     }
+    if (candidate_failed(answer) && candidate_floods(c, out_dir, log))
+        answer->outcome = CANDIDATE_FLOODED;        /* it ended because it was not allowed to write on */
     candidate_explain(c, log, answer);
 }
 
@@ -221,9 +261,18 @@ bool candidate_hash(const struct candidate *c, char hex[17])
 {
     uint64_t hash = HASH_START;
     char path[PATH_LENGTH];
+    struct stat status;
     for (const char *p = c->command; *p; p++)
         hash = (hash ^ (unsigned char)*p) * UINT64_C(1099511628211);
     const bool found = find_program(c->command, path);
-    snprintf(hex, 17, "%016llx", (unsigned long long)(found ? file_hash(path, hash) : hash));
+    if (found)
+        hash = file_hash(path, hash);
+    for (const char *at = c->command + strcspn(c->command, " \t"); *at; at += strcspn(at, " \t")) {
+        at += strspn(at, " \t");
+        snprintf(path, sizeof path, "%.*s", (int)strcspn(at, " \t"), at);
+        if (stat(path, &status) == 0 && S_ISREG(status.st_mode))
+            hash = file_hash(path, hash);
+    }
+    snprintf(hex, 17, "%016llx", (unsigned long long)hash);
     return found;
 }

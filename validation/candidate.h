@@ -54,8 +54,8 @@ void candidate_server_stop(struct candidate_server *s);     /* by its owner; at 
 void candidate_stop_with_us(void);
 
 /*
- * Hash of the command line and of the program file behind its first word (found in PATH), as 16 hex digits. False if
- * there is no such program.
+ * Hash of the command line, of the program file behind its first word (found in PATH) and of the files that its other words name (the script of an
+ * interpreter), as 16 hex digits. False if there is no such program.
  */
 bool candidate_hash(const struct candidate *c, char hex[17]);
 
@@ -65,6 +65,7 @@ double candidate_now(void);                                             /* secon
 bool candidate_floods(const struct candidate *c, const char *out_dir, const char *log);
 void candidate_limits(const struct candidate *c);                       /* in the child: size of files, no core dumps */
 void candidate_explain(const struct candidate *c, const char *log, struct candidate_answer *answer);   /* said and message */
+bool candidate_failed(const struct candidate_answer *answer);           /* by itself: no limit, no exit 77 */
 void candidate_running(pid_t group);                                    /* what to kill where we are stopped; 0: none */
 void candidate_ask_server(const struct candidate *c, const char *case_dir, const char *out_dir, struct candidate_answer *answer);
 

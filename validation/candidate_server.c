@@ -212,6 +212,8 @@ void candidate_ask_server(const struct candidate *c, const char *case_dir, const
         answer->detail = code;
         answer->outcome = found == 1 && code == 77 ? CANDIDATE_UNSUPPORTED : CANDIDATE_FAILED;
     }
+    if (candidate_failed(answer) && candidate_floods(c, out_dir, log_path))
+        answer->outcome = CANDIDATE_FLOODED;
     candidate_explain(c, log_path, answer);
     if (found == -1 && answer->outcome == CANDIDATE_FAILED && code == 0)
         snprintf(answer->message, sizeof answer->message, "candidate ended before it answered (run-all goes on until the end of its input)");

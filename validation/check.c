@@ -180,9 +180,11 @@ enum verdict result_counts(const struct result *r)
     return r->accepted ? VERDICT_SKIP : r->verdict;
 }
 
-/* What matters most: a failed invariant before a failed model, among equals the one furthest beyond its limit. */
+/* What matters most: a failed invariant before a failed model, among equals the one furthest beyond its limit; last what was not judged. */
 static double badness(const struct result *r)
 {
+    if (r->verdict == VERDICT_SKIP)
+        return -1;
     const double excess = !isnan(r->p) ? -log10(r->p + 1e-300) / 6 : r->error / r->tolerance;
     return 1e6 * (double)(int)result_counts(r) + (result_counts(r) == VERDICT_FAIL && r->judgement == INVARIANT ? 5e5 : 0)
            + (isnan(excess) ? 4e5 : fmin(excess, 4e5));
@@ -210,6 +212,14 @@ enum verdict results_verdict(const struct results *r)
     if (r->count == 0)
         return VERDICT_INCONCLUSIVE;
     return worst == VERDICT_SKIP && passed ? VERDICT_PASS : worst;
+}
+
+size_t results_not_judged(const struct results *r)
+{
+    size_t skipped = 0;
+    for (size_t k = 0; k < r->count; k++)
+        skipped += r->item[k].verdict == VERDICT_SKIP;
+    return skipped;
 }
 
 const char *verdict_word(enum verdict v)

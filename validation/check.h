@@ -122,6 +122,7 @@ void result_notes(struct result *r, const char *format, ...) __attribute__((form
 /* --- for the gate --- */
 
 #define STAGE_ONE_ALARM 1e-4
+#define FEW_DIGITS 1e-5             /* errors below look like numbers of few digits, not like wrong physics; the six of %g are within */
 #define SUITE_ALARM_RATE 1e-6
 #define DECISIVE 1e-20              /* far below SUITE_ALARM_RATE over any number of results */
 
@@ -129,7 +130,8 @@ void result_notes(struct result *r, const char *format, ...) __attribute__((form
 void check_judge(struct check_run *run, const struct check *check, int p_values, unsigned seed_offset);
 enum verdict result_counts(const struct result *r); /* its verdict; an accepted failure counts as skipped */
 enum verdict results_verdict(const struct results *r);
-const struct result *results_worst(const struct results *r);
+const struct result *results_worst(const struct results *r);  /* one that was not judged only where none was */
+size_t results_not_judged(const struct results *r);
 const char *verdict_word(enum verdict v);           /* "pass", "skip", "inconclusive", "FAIL" */
 json_t *results_to_json(const struct results *r);
 bool results_from_json(const json_t *j, struct results *r);

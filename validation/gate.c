@@ -44,6 +44,7 @@ static const char help[] =
     "  --tier TIER           fast (default), standard, full; each includes the ones before it\n"
     "  --jobs N              worker processes (default 1)\n"
     "  --stop-after N        end the run once N cases have failed\n"
+    "  --patience FACTOR     time limits of the cases times this (default 1), for a slow candidate or machine\n"
     "  --suite VERSION       the suite as it was frozen, for example " GATE_SUITE ": newer cases only warn, and a case that has\n"
     "                        changed since is an error (default: the cases as they are)\n"
     "  --known FILE          failures that are accepted, with reason and expiry (docs/known.schema.json)\n"
@@ -64,6 +65,7 @@ struct options {
     char suite_dir[PATH_LENGTH];
     enum tier tier;
     int jobs, stop_after;
+    double patience;
     unsigned seed_offset, seeds;
     bool calibrating;
 };
@@ -148,6 +150,11 @@ static int parse_option(struct options *o, const char *name, const char *value)
         if (!whole_number(value, 1, 1000, &n))
             return usage("--stop-after '%s' is no whole number from 1 to 1000", value);
         o->stop_after = (int)n;
+    } else if (strcmp(name, "--patience") == 0) {
+        char *end;
+        o->patience = strtod(value, &end);
+        if (end == value || *end || !(o->patience > 0 && o->patience <= 1e6))
+            return usage("--patience '%s' is no number above 0", value);
     } else if (strcmp(name, "--seed-offset") == 0) {
         if (!whole_number(value, 0, 2147483647, &n))
             return usage("--seed-offset '%s' is no whole number from 0 to 2147483647", value);
@@ -180,6 +187,26 @@ static bool wanted(const struct options *o, const struct gate_case *c)
            && (!o->layers || in_list(o->layers, layer_name(c->layer)) || in_list(o->layers, number));
 }
 
+/* A word that no case names, and those that some do. */
+static int check_needs(const char *needs, const struct suite_of_cases *suite)
+{
+    json_t *words = json_object();
+    char list[1024] = "";
+    for (size_t k = 0; k < suite->count; k++) {
+        size_t n;
+        json_t *word;
+        json_array_foreach(suite->item[k].needs, n, word)
+            json_object_set_new(words, json_string_value(word), json_true());
+    }
+    const bool known = json_object_get(words, needs) != NULL;
+    const char *word;
+    json_t *value;
+    json_object_foreach(words, word, value)
+        snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", *list ? ", " : "", word);
+    json_decref(words);
+    return known ? 0 : usage("--needs '%s': no case names this as what it is about; some name %s", needs, list);
+}
+
 /* Every name in --layer and --case must mean something: a typing error must not make an empty run look like a pass. */
 static int check_names(const struct options *o, const struct suite_of_cases *suite)
 {
@@ -198,7 +225,7 @@ static int check_names(const struct options *o, const struct suite_of_cases *sui
         if (!known)
             return usage("there is no case '%s'; see gate list --tier full", word);
     }
-    return 0;
+    return o->needs ? check_needs(o->needs, suite) : 0;
 }
 
 /* Layers without a chosen case, and how many cases were left out of the others. */
@@ -299,7 +326,7 @@ static int run_cases(const struct options *o, const struct suite_of_cases *suite
         return usage("%s", why);
     work = realpath(o->work, NULL); /* absolute: a candidate may change its folder */
     struct run_plan plan = { .gate_case = chosen, .count = count, .work = work, .jobs = o->jobs, .p_values = suite->p_values,
-                             .seed_offset = o->seed_offset, .stop_after = o->stop_after, .keep = o->keep, .known = &known };
+                             .seed_offset = o->seed_offset, .stop_after = o->stop_after, .patience = o->patience, .keep = o->keep, .known = &known };
     struct capabilities capabilities;
     if (!capabilities_choose(o->capabilities, o->candidate, o->level, &capabilities, why)) {
         free(work);
@@ -425,7 +452,7 @@ int main(int argc, char **argv)
         && strcmp(verb, "freeze") != 0 && strcmp(verb, "export") != 0 && strcmp(verb, "judge") != 0)
         return usage("%s'%s'; see gate --help", *verb ? "unknown command " : "say `run`, `list`, `explain`, `export`, `judge`, `calibrate` or `freeze`, not ", verb);
 
-    struct options o = { .report = "build/report", .work = "build/cases", .jobs = 1,
+    struct options o = { .report = "build/report", .work = "build/cases", .jobs = 1, .patience = 1,
                          .calibrating = strcmp(verb, "calibrate") == 0 };
     find_suite(o.suite_dir);
     if (strcmp(verb, "explain") == 0)
@@ -457,7 +484,7 @@ int main(int argc, char **argv)
         return usage("%s", why);
     if (code != 0)
         return code;
-    if (!offline && strcmp(verb, "list") != 0 && strcmp(verb, "freeze") != 0 && !o.candidate)
+    if (!offline && strcmp(verb, "list") != 0 && strcmp(verb, "freeze") != 0 && (!o.candidate || o.candidate[strspn(o.candidate, " \t")] == '\0'))
         return usage("%s needs --candidate COMMAND", verb);
     if (o.calibrating && (!o.seeds || !o.table))
         return usage("calibrate needs --seeds N and --table FILE");

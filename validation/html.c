@@ -221,7 +221,11 @@ static void one_case(FILE *f, const struct finished_case *done)
     if (worst && done->verdict != VERDICT_SKIP) {
         char error[32];
         terminal_error(error, sizeof error, worst);
-        fprintf(f, "%zu judged<br>worst %s%s", done->results.count, isnan(worst->p) ? "error " : "", error);
+        const size_t skipped = results_not_judged(&done->results);
+        fprintf(f, "%zu judged", done->results.count - skipped);
+        if (skipped)
+            fprintf(f, ", %zu not", skipped);
+        fprintf(f, "<br>worst %s%s", isnan(worst->p) ? "error " : "", error);
     }
     fputs("</span>", f);
     case_badge(f, done);

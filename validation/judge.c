@@ -7,6 +7,7 @@
 #include "offline.h"
 #include "precision.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -67,6 +68,32 @@ static void look_for_conventions(struct check_run *run, const struct check *chec
     }
 }
 
+/*
+ * Of frozen pairs something is wrong by less than physics would make it: the first sentence says what it may be. Other errors beside it can have the same
+ * cause, at gaps so close to the end of a force that rounded positions lie beyond.
+ */
+static void look_for_few_digits(struct check_run *run)
+{
+    const struct capabilities *c = run->candidate->capabilities;
+    struct result *first = NULL;
+    double least = FEW_DIGITS;
+    for (size_t k = 0; k < run->results.count; k++) {
+        struct result *r = &run->results.item[k];
+        if (r->verdict != VERDICT_FAIL || isnan(r->error))
+            continue;
+        least = r->tolerance < 1e-8 ? fmin(least, r->error) : least;
+        if (!first || r->judgement < first->judgement)
+            first = r;
+    }
+    if (run->gate_case->layer != LAYER_PAIR || !first || !(least < FEW_DIGITS))
+        return;
+    char text[3 * WHY_LENGTH];
+    snprintf(text, sizeof text, "an error of only %.1g is among what is wrong: numbers written with few digits (17 keep a double), a constant such as pi, or single "
+             "precision%s? Here: %s", least, c && c->roundoff > 0 ? "" : ", which is declared as \"precision\" (docs/adapter.md)", first->sentence);
+    free(first->sentence);
+    first->sentence = strdup(text);
+}
+
 static bool has_needs(struct check_run *run)
 {
     size_t k;
@@ -94,6 +121,7 @@ void judge_case(struct check_run *run, const struct check *check, int p_values, 
     else
         check_judge(run, check, p_values, seed_offset);
     look_for_conventions(run, check);
+    look_for_few_digits(run);
     run->gate_case = c;
     json_decref(adapted.scene);
     json_decref(adapted.parameters);

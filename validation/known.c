@@ -124,8 +124,11 @@ static enum standing apply_entry(const struct known_entry *e, struct finished_ca
         return COUNTS;                      /* the candidate was not asked: nothing is known of it */
     if (e->expired)
         return why_not(remark, "known.json accepted '%s' until %s, which is past (%s)", quantity, e->expires, e->reason), EXPIRED;
-    if (named == 0)
-        return why_not(remark, "known.json accepts '%s', and no quantity of this case is called so", quantity), HEALED;
+    if (named == 0) {
+        const struct result *worst = results_worst(&done->results);
+        return why_not(remark, "known.json accepts '%s', and no quantity of this case is called so; %s '%s'", quantity,
+                       done->verdict >= VERDICT_INCONCLUSIVE ? "what is wrong is called" : "one is called", worst ? worst->what : ""), HEALED;
+    }
     if (wrong == 0 && passed > 0)
         return why_not(remark, "known.json accepts '%s', and it passes now: take the entry out (it said: %s)", quantity, e->reason),
                HEALED;

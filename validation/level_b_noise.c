@@ -87,8 +87,8 @@ bool steps_start(const char *out, const struct question *q, size_t states, size_
 {
     for (size_t r = 0; r < states * particles; r++)
         if (!same_start(value[(r / particles * (q->steps + 1)) * particles + r % particles], &q->state[r], roundoff))
-            return why_not(why, "%s: state %zu, step 0, id %zu does not have the velocity and spin that were given", out, r / particles,
-                           r % particles + 1);
+            return why_not(why, "%s: state %zu, step 0, id %zu does not have the velocity and spin that were given: another order of the particles, or too few "
+                           "digits (17 keep a double; a program that has fewer says so in its capabilities, \"precision\")", out, r / particles, r % particles + 1);
     return true;
 }
 

@@ -28,7 +28,7 @@ static int work_on(const struct run_plan *plan, const struct gate_case *c, const
 {
     candidate_stop_with_us();
     struct candidate candidate = plan->candidate;
-    candidate.seconds = c->seconds;
+    candidate.seconds = c->seconds * plan->patience;
     candidate.server = server->pid ? server : NULL;
     struct check_run run = { .gate_case = c, .candidate = &candidate, .keep = plan->keep };
     snprintf(run.work, sizeof run.work, "%s", work);

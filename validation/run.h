@@ -12,6 +12,7 @@ struct run_plan {
     int jobs;
     int p_values;                       /* of the whole suite */
     unsigned seed_offset;
+    double patience;                    /* time limits are those of the cases times this */
     int stop_after;                     /* the run ends once so many cases are red; 0: it goes through all */
     const char *keep;                   /* check.h */
     const struct known_list *known;     /* accepted failures; null: none */

@@ -60,15 +60,15 @@ static int worse_first(const void *a, const void *b)
 /* Wrapped at 116 columns, indented under the case's line. */
 static void print_wrapped(enum verdict shade, const char *label, const char *sentence)
 {
-    printf("           %s%s%s: ", colour(shade), label, plain());
+    printf("           %s%s%s:", colour(shade), label, plain());
     int column = 24;
     for (const char *word = sentence ? sentence : ""; *word;) {
         const int n = (int)strcspn(word, " \n");
-        if (column + n > 116) {
-            printf("\n               ");
-            column = 15;
-        }
-        printf("%.*s ", n, word);
+        if (column + n > 116)
+            column = printf("\n               ") - 1;
+        else
+            putchar(' ');
+        printf("%.*s", n, word);
         column += n + 1;
         word += n;
         word += strspn(word, " \n");
@@ -76,11 +76,13 @@ static void print_wrapped(enum verdict shade, const char *label, const char *sen
     putchar('\n');
 }
 
+/* What is wrong ends with the name of the quantity, by which known.json accepts it. */
 static void print_sentence(const struct result *r)
 {
-    print_wrapped(result_counts(r), r->accepted ? "known" : r->verdict == VERDICT_FAIL ? "fails" : verdict_word(r->verdict), r->sentence);
+    char text[3 * WHY_LENGTH];
+    snprintf(text, sizeof text, r->verdict == VERDICT_SKIP ? "%s" : "%s [%s]", r->sentence ? r->sentence : "", r->what);
+    print_wrapped(result_counts(r), r->accepted ? "known" : r->verdict == VERDICT_FAIL ? "fails" : verdict_word(r->verdict), text);
 }
-
 static void print_sentences(const struct results *r)
 {
     const struct result **order = malloc((r->count + 1) * sizeof *order);
@@ -110,8 +112,26 @@ void terminal_case(const struct finished_case *done)
            plain(), done->seconds);
     if (done->remark)
         print_wrapped(finished_counts(done), finished_word(done), done->remark);
+    const size_t skipped = results_not_judged(&done->results);
+    if (skipped && skipped < done->results.count)
+        printf("           %zu of %zu not judged\n", skipped, done->results.count);
     print_sentences(&done->results);
     fflush(stdout);
+}
+
+/* Cases that pass in what was judged, and how much of them was not. */
+static void name_passed_in_part(const struct finished_case *done, size_t count)
+{
+    bool first = true;
+    for (size_t k = 0; k < count; k++) {
+        const size_t skipped = results_not_judged(&done[k].results);
+        if (finished_counts(&done[k]) != VERDICT_PASS || skipped == 0)
+            continue;
+        printf("%s %s (%zu of %zu)", first ? "passed, but for what was not judged:" : ",", done[k].gate_case->name, skipped, done[k].results.count);
+        first = false;
+    }
+    if (!first)
+        putchar('\n');
 }
 
 /* Names the cases that are called this way ("FAIL", "known", "warns"). */
@@ -140,6 +160,7 @@ void terminal_close(const struct provenance *p, const struct finished_case *done
     name_those("inconclusive (counted as failed):", "inconclusive", done, count);
     name_those("known failures (counted as skipped):", "known", done, count);
     name_those("fail, but are newer than the suite asked (warnings, counted as skipped):", "warns", done, count);
+    name_passed_in_part(done, count);
     name_those("skipped, the candidate does not have this physics:", "skip", done, count);
     printf("%.1f s, of which %.1f s of candidate runs\n", p->seconds, candidate);
     printf("%d passed, %d failed, %d skipped\n", t.passed, t.failed, t.skipped);

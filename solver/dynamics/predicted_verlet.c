@@ -44,6 +44,26 @@ static bool predicted_begin(const struct dynamics *self, struct suspension *s, b
     return verlet.begin(self, s, relisted, e);
 }
 
+/*
+ * In a flow that changes, forces at predicted velocities want the images of that moment, too; with those of the middle of the step a pair across a
+ * face would be wrong to first order. Histories follow the half-step velocities and keep the images of the middle: they get the difference back.
+ */
+static void predict_images(struct suspension *s)
+{
+    const struct particles *p = &s->particles;
+    struct box *b = &s->box;
+    struct near_pairs *near = &s->neighbours.near;
+    for (int k = 0; b->flow && k < near->count; k++) {
+        struct pair *pair = &near->pair[k];
+        const vec3 offset = minus(scaled(pair->normal, pair->distance), minus(p->position[pair->j], p->position[pair->i]));
+        const vec3 more = minus(mat3_times(&b->gradient, offset), mat3_times(&b->image_gradient, offset));
+        pair->image_velocity = plus(pair->image_velocity, more);
+        if (pair->history)
+            *pair->history = plus(*pair->history, scaled(more, s->dt));
+    }
+    b->image_gradient = b->gradient;                        /* drag alike */
+}
+
 static bool predicted_step(const struct dynamics *self, struct suspension *s, bool *relisted, struct error *e)
 {
     struct half_step *half = s->dynamics_state;
@@ -61,7 +81,7 @@ static bool predicted_step(const struct dynamics *self, struct suspension *s, bo
             half->spin[i] = p->spin[i];
     }
     kick(s, 0.5 * s->dt);                                   /* predicts, with the old forces */
-    s->box.image_gradient = s->box.gradient;                /* so drag is second order in a flow that changes; images of pairs are not */
+    predict_images(s);
     struct moment now = moment_of(s, s->dt);
     now.drift_velocity = half->velocity;
     now.drift_spin = half->spin;

@@ -6,36 +6,40 @@
     lammps-candidate --deck CASE_DIR OUT_DIR    write deck and data, run nothing
 
 What stock styles have no exact equivalent of ends with exit code 77 and the reason. --own lets LAMMPS's own lubrication, noise and uniform
-random numbers stand for those of the scene: lubricate/poly and brownian/poly, or lubricate and brownian (equal spheres). --own theory and
---own reference are the gate's second code: lammps_reference.py. `newton` is off unless asked, on with --own equal.
+random numbers stand for those of the scene: lubricate/poly and brownian/poly, or lubricate and brownian (equal spheres): lammps_own.py.
+--own theory and --own reference are the gate's second code: lammps_reference.py. --newton is for --own poly and equal: off unless asked, on with equal.
 """
-import os, sys
-from lammps_stock import Stock
+import argparse, os
 
 
-def main(words):
-    option = {"--own": None, "--newton": None, "--deck": False}
-    while words and words[0] in option:
-        name = words.pop(0)
-        option[name] = name == "--deck" or (words.pop(0) if words else "nothing")
-    own, newton = option["--own"], option["--newton"]
-    if len(words) != 2 or own not in (None, "poly", "equal", "theory", "reference") or newton not in (None, "on", "off"):
-        print(__doc__, file=sys.stderr)
-        return 2
-    folder, out = words
-    if own in ("theory", "reference"):
+def options():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--own", choices=("poly", "equal", "theory", "reference"))
+    parser.add_argument("--newton", choices=("on", "off"))
+    parser.add_argument("--deck", action="store_true")
+    parser.add_argument("case")
+    parser.add_argument("out")
+    return parser.parse_args()
+
+
+def adapter(o):
+    """Stock LAMMPS; what stands in for it is imported only where asked for."""
+    if o.own in ("poly", "equal"):
+        from lammps_own import Own
+        return Own(o.case, o.own, o.newton)
+    if o.own:
         import lammps_reference
-        t = lammps_reference.Theory(folder) if own == "theory" else lammps_reference.reference(folder)(folder)
-    else:
-        t = Stock(folder, own, newton)
-    os.makedirs(out, exist_ok=True)
-    for state in t.states:
-        t.write_data(state, out)
-    t.write_deck(out)
-    if not option["--deck"]:
-        t.run_lammps(out)
-        {"forces": t.answer_forces, "noise": t.answer_noise, "run": t.answer_run}[t.protocol](out)
-    return 0
+        return lammps_reference.Theory(o.case) if o.own == "theory" else lammps_reference.reference(o.case)(o.case)
+    from lammps_stock import Stock
+    return Stock(o.case)
 
 
-sys.exit(main(sys.argv[1:]))
+o = options()
+t = adapter(o)
+os.makedirs(o.out, exist_ok=True)
+for state in t.states:
+    t.write_data(state, o.out)
+t.write_deck(o.out)
+if not o.deck:
+    t.run_lammps(o.out)
+    {"forces": t.answer_forces, "noise": t.answer_noise, "run": t.answer_run}[t.protocol](o.out)

@@ -3,7 +3,7 @@
 
 Two spheres on the x axis are given one unit velocity or spin after the other; forces and torques of `run 0` are the columns of R. Every
 coefficient is shown as LAMMPS / theory, theory being the leading terms of Jeffrey & Onishi (1984) as in docs/physics.md, written here a third
-time. Then the same with newton on, in other boxes, in a sheared cell; a pair in a flow; noise; drag; contact and repulsion.
+time. Then the same with newton on, in other boxes, in a sheared cell; a pair in a flow; velocities set by lubricateU; noise; drag; contact and repulsion.
 
 Each number has a verdict in tools/lammps/verdicts.csv, equal, convention or different, with the value seen in LAMMPS 29 Sep 2021, a bound and a reason. The table
 goes to build/second-opinion.csv. Ends with non-zero if a number has left its bound or has no verdict: so another LAMMPS would show.
@@ -169,7 +169,7 @@ def said_by(deck):
     """Numbers that a deck prints after the word RESULT."""
     with tempfile.TemporaryDirectory() as folder:
         open(os.path.join(folder, "in.lammps"), "w").write(deck)
-        said = subprocess.run([LMP, "-in", "in.lammps", "-log", "none", "-nocite"], capture_output=True, text=True, cwd=folder).stdout
+        said = subprocess.run([LMP, "-in", "in.lammps", "-log", "none", "-nocite"], capture_output=True, text=True, cwd=folder, timeout=600).stdout
     if "ERROR" in said:
         sys.exit("second-opinion: LAMMPS stopped: " + said[said.index("ERROR"):][:300])
     return [[float(v) for v in line.split()[1:]] for line in said.splitlines() if line.startswith("RESULT")]
@@ -283,6 +283,208 @@ def draws(style, a, b, xi, kT, dt, count, newton="off"):
         rows = [[float(v) for v in line.split()] for line in open(os.path.join(folder, "draws")) if len(line.split()) == 7 and line[0].isdigit()]
     return [one[1:4] + two[1:4] + one[4:7] + two[4:7] for one, two in zip(rows[2::2], rows[3::2])]
 
+MOVING = """units lj
+atom_style hybrid sphere dipole
+atom_modify map array
+newton {newton}
+comm_modify vel yes
+box tilt large
+region r prism 0 {edge} 0 {edge} 0 {edge} 0 0 0
+create_box 1 r
+{spheres}
+set type 1 diameter {d1!r}
+set atom 2 diameter {d2!r}
+set type 1 density 1.0
+pair_style hybrid/overlay {load} {style} {eta!r} {log} {inner!r} {outer!r} {rate!r} 1 {vf}
+pair_coeff * * {coefficients}
+pair_coeff * * {style}
+neighbor 0.3 bin
+timestep {dt!r}
+fix move all nve/noforce
+{flow}
+compute w all property/atom omegaz
+compute keep all reduce sum c_w
+thermo_style custom step c_keep
+run 1
+print 'RESULT {numbers}'
+"""
+
+
+def moving(style, a, b, xi, load="central", angle=0.0, rate=0.0, log=1, vf=0, edge=60.0, newton="off", place=(0.4, 0.4), dt=1e-9):
+    """
+    What lubricateU sets: velocities (x, y) relative to the flow and spins (z) relative to half its vorticity, of spheres 1 and 2 (and 3), and the
+    load: force on 2 and torques on 1 and 2. Loads: `central` repulsion; `across` n, from a sphere 8 above 1 and one 8 below 2; `dipoles` along n and across.
+    """
+    r = a + b + 0.5 * (a + b) * xi
+    at = [[place[0] * edge, place[1] * edge], [place[0] * edge + r * math.cos(angle), place[1] * edge + r * math.sin(angle)]]
+    pair, coefficients, force, torques = f"lj/cut/dipole/cut {1.2 * (a + b)!r}", f"lj/cut/dipole/cut 0 1 {1.2 * (a + b)!r}", 0.0, (0.0, 0.0)
+    spins = ""
+    if load == "central":
+        pair, coefficients, force = f"born {1.2 * (a + b)!r}", f"born 2.0 0.5 {a + b!r} 0 0", 4 * math.exp((a + b - r) / 0.5)
+    elif load == "across":
+        at += [[at[0][0], at[0][1] + 8], [at[1][0], at[1][1] - 8]]
+        pair, coefficients, force = "born 8.2", "born 2.0 100 8 0 0", 0.02
+    elif load == "dipoles":
+        spins, force, torques = "\nset atom 1 dipole 5 0 0\nset atom 2 dipole 0 5 0", 75 / r ** 4, (-25 / r ** 3, -50 / r ** 3)
+    names = [f"$(v{c}[{k + 1}]" + (f"-{rate!r}*y[{k + 1}]" if c == "x" else "") + ":%.15g)" for k in range(min(3, len(at))) for c in "xy"]
+    deck = MOVING.format(newton=newton, edge=edge, d1=2 * a, d2=2 * b, load=pair, style=style, eta=ETA, log=log, inner=(a + b) * 1.00001, outer=(a + b) * 1.3,
+                         rate=rate, vf=vf, coefficients=coefficients, dt=dt, flow=f"fix flow all deform 1 xy erate {rate!r} remap v" if rate else "",
+                         spheres="\n".join(f"create_atoms 1 single {x % edge!r} {y % edge!r} {edge / 2!r}" for x, y in at) + spins,
+                         numbers=" ".join(["$(c_w[1]:%.15g) $(c_w[2]:%.15g)"] + names))
+    v = said_by(deck)[0]
+    return [v[2 + 2 * k:4 + 2 * k] for k in range(len(names) // 2)], [w + rate / 2 for w in v[:2]], force, torques
+
+
+def solved(M, y):
+    """x of M x = y, by elimination."""
+    rows = [list(m) + [v] for m, v in zip(M, y)]
+    for k, pivot in enumerate(rows):
+        for row in rows:
+            if row is not pivot:
+                f = row[k] / pivot[k]
+                row[:] = [p - f * q for p, q in zip(row, pivot)]
+    return [row[-1] / row[k] for k, row in enumerate(rows)]
+
+
+def alone(a):
+    return 6 * PI * ETA * a, 8 * PI * ETA * a ** 3
+
+
+def loaded(see, name, xi):
+    """Equal spheres at rest under three loads: the pair's scalars, once the known drag of each sphere is taken off."""
+    a = 1.3
+    ours, (zeta, turn), situation = theory(a, a, xi), alone(a), f"b/a 1, xi {xi:g}"
+    U, W, force, _ = moving(name, a, a, xi)
+    u = U[1][0] - U[0][0]
+    see(name, situation, "X_A", (force / u - zeta / 2) / ours["X_A"])
+    see(name, situation, "third law", (U[0][0] + U[1][0]) / u)
+    U, W, force, _ = moving(name, a, a, xi, "across")
+    see(name, situation, "drag", zeta * U[2][1] / force)
+    one = [U[1][1] - U[0][1], (W[0] + W[1]) / 2], force, 0.0
+    U, W, force, torques = moving(name, a, a, xi, "dipoles")
+    two = [U[1][1] - U[0][1], (W[0] + W[1]) / 2], force, (torques[0] + torques[1]) / 2
+    Y, B = solved((one[0], two[0]), (one[1], two[1]))           # zeta u/2 + Y_A u + 2 B_1 W = force
+    B1, C = solved((one[0], two[0]), (one[2], two[2]))          # B_1 u + (8 pi eta a^3 + C_11 + C_12) W = torque
+    see(name, situation, "Y_A", (Y - zeta / 2) / ours["Y_A"])
+    see(name, situation, "B of force", B / 2 / ours["B_1"])
+    see(name, situation, "B of torque", B1 / ours["B_1"])
+    see(name, situation, "C_11 + C_12", (C - turn) / (ours["C_11"] + ours["C_12"]))
+    see(name, situation, "C_11 - C_12", ((torques[0] - torques[1]) / (W[0] - W[1]) - turn) / (ours["C_11"] - ours["C_12"]))
+
+
+def flow_of(a, b, xi, angle, rate, log=1):
+    """Right: u_1, u_2 along n; u_1, u_2 across n, spins, all relative to the flow, of a free pair. The strain acts over the distance a + b of closest points."""
+    S, (z1, r1), (z2, r2) = theory(a, b, xi), alone(a), alone(b)
+    if not log:
+        S = {k: 0.0 for k in S} | {"X_A": 6 * PI * ETA * a * 2 * (b / a) ** 2 / (1 + b / a) ** 3 / xi}
+    X, Y, B1, B2 = S["X_A"], S["Y_A"], S["B_1"], S["B_2"]
+    along, across = (a + b) * rate * math.sin(angle) * math.cos(angle), (a + b) * rate / 2 * math.cos(2 * angle)
+    return solved(((z1 + X, -X), (-X, z2 + X)), (X * along, -X * along)) + solved(
+        ((z1 + Y, -Y, -B1, -B2), (-Y, z2 + Y, B1, B2), (-B1, B1, r1 + S["C_11"], S["C_12"]), (-B2, B2, S["C_12"], r2 + S["C_22"])),
+        (Y * across, -Y * across, -B1 * across, -B2 * across))
+
+
+def carried(see, name, ratio, xi, angle, situation="", log=1, **how):
+    """A free pair in shear: velocities and spins relative to the flow over the right ones, and the sum of the drags, which must vanish."""
+    a, rate = 1.3, 0.4
+    b, n = a * ratio, (math.cos(angle), math.sin(angle))
+    U, W, _, _ = moving(name, a, b, xi, "flow", angle, rate, log=log, **how)
+    right = flow_of(a, b, xi, angle, rate, log)
+    along, across = [u[0] * n[0] + u[1] * n[1] for u in U], [u[1] * n[0] - u[0] * n[1] for u in U]
+    situation = f"b/a {ratio:g}, xi {xi:g}, shear, angle {angle:g}" + situation
+    see(name, situation, "along n", (along[1] - along[0]) / (right[1] - right[0]))
+    if log:
+        see(name, situation, "across n", (across[1] - across[0]) / (right[3] - right[2]))
+        see(name, situation, "spin 1", W[0] / right[4])
+        see(name, situation, "spin 2", W[1] / right[5])
+    size = sum(r * math.hypot(*u) for r, u in zip((a, b), U))
+    see(name, situation, "third law", math.hypot(*(a * U[0][k] + b * U[1][k] for k in (0, 1))) / size)
+
+
+def pushed(see, name, ratio, xi):
+    """A pair at rest under a central force: speeds over the right ones, and the sum of the drags over the force."""
+    a, b = 1.3, 1.3 * ratio
+    U, _, force, _ = moving(name, a, b, xi)
+    X, z1, z2 = theory(a, b, xi)["X_A"], alone(a)[0], alone(b)[0]
+    situation = f"b/a {ratio:.4g}, xi {xi:g}"
+    for k, right in enumerate(solved(((z1 + X, -X), (-X, z2 + X)), (-force, force))):
+        see(name, situation, f"speed {k + 1}", U[k][0] / right)
+    see(name, situation, "third law", (z1 * U[0][0] + z2 * U[1][0]) / force)
+
+
+def elsewhere(see, name, what, how):
+    """The same pair of equal spheres in shear elsewhere: largest change of a velocity relative to the flow or a spin, over the largest."""
+    a, rate = 1.3, 0.4
+    flat = lambda v: v[0][0] + v[0][1] + [a * w for w in v[1]]
+    one, other = (flat(moving(name, a, a, 0.01, "flow", 0.6, rate, **h)) for h in ({}, how))
+    see(name, f"b/a 1, xi 0.01, shear, {what}", "change", max(abs(x - y) for x, y in zip(one, other)) / max(map(abs, one)))
+
+
+def crowded(see, name):
+    """flagVF 1: the drag of a sphere far from others, over 6 pi eta a (1 + 2.725 phi - 6.583 phi^2), phi of the four spheres."""
+    a, edge = 1.3, 24.0
+    U, _, force, _ = moving(name, a, a, 0.01, "across", vf=1, edge=edge, place=(0.5, 0.5))
+    phi = 4 * 4 / 3 * PI * a ** 3 / edge ** 3
+    see(name, "flagVF 1, box 24", "drag", force / U[2][1] / alone(a)[0] / (1 + 2.725 * phi - 6.583 * phi * phi))
+
+
+def moving_checks():
+    for name in ("lubricateU", "lubricateU/poly"):
+        for xi in (0.001, 0.01, 0.1):
+            yield lambda see, name=name, xi=xi: loaded(see, name, xi)
+        for xi, angle in ((0.001, 0.6), (0.01, 0.6), (0.01, 1.3), (0.01, 2.5), (0.1, 0.6)):
+            yield lambda see, name=name, xi=xi, angle=angle: carried(see, name, 1, xi, angle)
+        for what, how in (("newton on", {"newton": "on"}), ("box 24", {"edge": 24.0}), ("box 200", {"edge": 200.0}), ("lower", {"place": (0.4, 0.2)}),
+                          ("across a face in x", {"place": (0.99, 0.4)}), ("across a face in y", {"place": (0.4, 0.99)})):
+            if what != "newton on" or name == "lubricateU":         # else refused by LAMMPS, with a sentence
+                yield lambda see, name=name, what=what, how=how: elsewhere(see, name, what, how)
+        yield lambda see, name=name: crowded(see, name)
+    for xi, ratio in ((0.001, 1.4), (0.01, 1.4), (0.1, 1.4), (0.01, 1 / 1.4)):
+        yield lambda see, xi=xi, ratio=ratio: pushed(see, "lubricateU/poly", ratio, xi)
+    for xi in (0.001, 0.01, 0.1):
+        yield lambda see, xi=xi: carried(see, "lubricateU/poly", 1.4, xi, 0.6)
+    for ratio in (1, 1.4, 5):
+        yield lambda see, ratio=ratio: carried(see, "lubricateU/poly", ratio, 0.01, 0.6, ", no log terms", log=0)
+
+
+TURN = """units lj
+atom_style sphere
+atom_modify map array
+newton {newton}
+comm_modify vel yes
+region r block 0 10 0 10 0 10
+create_box 1 r
+create_atoms 1 single 4 5 5
+create_atoms 1 single 4.96 5 5
+set type 1 diameter 1
+set type 1 density 0.7
+pair_style {style}
+pair_coeff * * {coefficients}
+timestep 0.001
+group two id 2
+velocity two set 0 2 0
+run 1 post no
+print 'RESULT $(fy[1]:%.15g)'
+velocity two set 0 0 0
+set atom 2 x $(4+0.96*cos({angle})) y $(5+0.96*sin({angle}))
+run 1 post no
+print 'RESULT $(fy[1]*cos({angle})-fx[1]*sin({angle}):%.15g)'
+"""
+
+
+def turns():
+    for name, style, coefficients in (("gran/hooke/history", "gran/hooke/history 900 200 0 0 0.5 0", ""),
+                                      ("granular", "granular", "hooke 900 0 tangential linear_history 200 0 0.5 damping mass_velocity")):
+        for newton in ("off", "on"):
+            for angle in (0.1, 0.3, 1.0):
+                yield lambda see, name=name, style=style, coefficients=coefficients, newton=newton, angle=angle: turn(see, name, style, coefficients, newton, angle)
+
+
+def turn(see, name, style, coefficients, newton, angle):
+    """A contact slides for one step; then the pair is turned: tangential force over that before, and over the projection of the history as in docs/physics.md."""
+    before, after = said_by(TURN.format(newton=newton, style=style, coefficients=coefficients, angle=angle))
+    see(name, f"newton {newton}, turn by {angle:g}", "history", after[0] / before[0] / math.cos(angle))
+
 
 def noise_checks():
     for name, drag, ratio, newton in (("brownian", LUBRICATE, 1, "off"), ("brownian", LUBRICATE, 1, "on"), ("brownian/poly", POLY, 1, "off"), ("brownian/poly", POLY, 1.4, "off"),
@@ -316,7 +518,7 @@ def numbers(task):
 def main():
     version = subprocess.run([LMP, "-h"], capture_output=True, text=True).stdout.split("Simulator - ")[1].splitlines()[0]
     print(f"LAMMPS {version}: LAMMPS over theory; third law, symmetry and change as violation over the largest element; twist about n: absolute")
-    tasks = [task for part in (pairs, flow_checks, noise_checks, drags, springs) for task in part()]
+    tasks = [task for part in (pairs, flow_checks, moving_checks, noise_checks, drags, springs, turns) for task in part()]
     with ThreadPoolExecutor(max_workers=16) as pool:        # what takes long is the start of each `lmp`
         for found in pool.map(numbers, tasks):
             for number in found:

@@ -15,17 +15,20 @@ PI = math.pi
 METAL, REAL = 0.6241509647, 14393.264316       # vxmu2f: LAMMPS's force units in viscosity x velocity x length of its units
 
 
-def run(deck, **variables):
-    words = [LMP, "-log", "none", "-nocite", "-in", os.path.join(HERE, "findings", deck)]
+def run(deck, seconds=1000, **variables):
+    """Numbers of a deck by name; those printed until then if it takes more than so many seconds of one core."""
+    words = ["sh", "-c", 'ulimit -t "$0"; exec "$@"', str(seconds), LMP, "-log", "none", "-nocite", "-in", os.path.join(HERE, "findings", deck)]
     for name, value in variables.items():
         words += ["-var", name, str(value)]
-    try:
-        said = subprocess.run(words, capture_output=True, text=True).stdout
-    except FileNotFoundError:
+    ran = subprocess.run(words, capture_output=True, text=True)
+    if ran.returncode == 127:
         sys.exit(f"findings: the LAMMPS program \"{LMP}\" was not found (Debian package lammps)")
+    said = ran.stdout
     errors = [line for line in said.splitlines() if line.startswith("ERROR")]
     if errors:
         sys.exit(f"findings: {deck}: {errors[0]}")
+    if ran.returncode not in (0, -9, -24):      # the two signals of the limit
+        sys.exit(f"findings: {deck}: LAMMPS ended with {ran.returncode}")
     return {line.split()[1]: float(line.split()[2]) for line in said.splitlines() if line.startswith("RESULT")}
 
 
@@ -116,6 +119,10 @@ def relative_spin(t):
             f, unit = run("relative-spin.in", style=style, gap=gap), PI * math.log(1 / gap)
             t.row(f"{style}, gap {gap:g}: p", 0.6, (f["on-2"] - f["on-1"]) / 2 / unit, log + linear * gap)
             t.row(f"{style}, gap {gap:g}: rolling", 1, -(f["on-2"] + f["on-1"]) / 2 / unit, 1, good=True)
+    for style, log, linear in (("lubricateU", 0.15, 0), ("lubricateU/poly", 6.4, 24.064)):      # torque = (8 pi eta a^3 + 2 p) W
+        for gap in (0.001, 0.01):
+            f, torque = run("dipole-spin.in", style=style, gap=gap), 12 / (2 + gap) ** 3
+            t.row(f"{style}, gap {gap:g}: p", 0.6, (2 * torque / (f["spin-2"] - f["spin-1"]) - 8 * PI) / 2 / (PI * math.log(1 / gap)), log + linear * gap)
 
 
 def units(t):
@@ -180,6 +187,103 @@ def wide_gap(t):
     t.row("lubricate/poly, gap 1.2 a", 0, run("wide-gap.in", style="lubricate/poly")["force"] / PI, math.log(1.2))
 
 
+def poly_side(a, b, h, log=1):
+    """What the side of radius a of lubricateU/poly has for squeeze, shear and relative spin (viscosity 1), from its source."""
+    x, k = h / a, b / a
+    L = math.log(1 / x) if log else 0.0
+    return (poly_squeeze(a, b, h) if log else 6 * PI * a * k * k / (1 + k) ** 2 / x,
+            6 * PI * a * (4 * k * (2 + k + 2 * k * k) / 15 / (1 + k) ** 3 + 4 * (16 - 45 * k + 58 * k * k - 45 * k ** 3 + 16 * k ** 4) * x / 375 / (1 + k) ** 4) * L,
+            8 * PI * a ** 3 * (0.4 * k * (1 + k) + (0.128 + 0.096 * k + 0.528 * k * k) * (1 + k) ** 2 * x) * L)
+
+
+def equal_side(a, b, h, log=1):
+    """The same for lubricateU."""
+    x = h / a
+    L = math.log(1 / x) if log else 0.0
+    return 6 * PI * a * (1 / 4 / x + 9 / 40 * L), PI * a * L, 8 * PI * a ** 3 * 3 / 160 * L
+
+
+def follow(side, b, gaps, force=0.0, angle=0.0, rate=0.0, log=1, tolerance=1e-3, most=10000):
+    """
+    The iteration of lubricateU (conjugate gradients) on a pair of radii 1 and b, whose sides see the gaps gaps[0] and gaps[1]: velocities along n
+    and across, spins, as `free-pair.in` prints them. Ends where the rest is below `tolerance` of the load; None if it does not within `most` rounds.
+    """
+    radii, (squeeze, shear, spin) = (1.0, b), zip(side(1, b, gaps[0], log), side(b, 1, gaps[1], log))
+    along, across = rate * math.sin(angle) * math.cos(angle), rate / 2 * math.cos(2 * angle)
+
+    def resistance(v):          # v: along 1, 2, across 1, 2, spins 1, 2
+        slip = v[2] - v[3] + v[4] + b * v[5]
+        out = [6 * PI * a * v[k] + squeeze[k] * (v[k] - v[1 - k]) for k, a in enumerate(radii)]
+        out += [6 * PI * a * v[2 + k] + (1 - 2 * k) * shear[k] * slip for k, a in enumerate(radii)]
+        return out + [8 * PI * a ** 3 * v[4 + k] + a * shear[k] * slip + spin[k] * (v[4 + k] - v[5 - k]) for k, a in enumerate(radii)]
+    dot = lambda p, q: sum(x * y for x, y in zip(p, q))
+    load = [(1 - 2 * k) * (2 * a * squeeze[k] * along - force) for k, a in enumerate(radii)]
+    load += [(1 - 2 * k) * 2 * a * shear[k] * across for k, a in enumerate(radii)] + [2 * a * a * shear[k] * across for k, a in enumerate(radii)]
+    v, rest = [0.0] * 6, load
+    way, size = rest, dot(load, load)
+    for _ in range(most):
+        image = resistance(way)
+        old = dot(rest, rest)
+        step = old / dot(image, way)
+        v = [x + step * p for x, p in zip(v, way)]
+        rest = [x - step * p for x, p in zip(rest, image)]
+        if not dot(rest, rest) > tolerance ** 2 * size:         # also where it is not a number
+            return v
+        way = [x + dot(rest, rest) / old * p for x, p in zip(rest, way)]
+    return None
+
+
+def drift(t):
+    t.head("sum of the drags of a free pair: at rest under a force F along n, over F; in shear at 45 degrees, over X_A (a_1 + a_2) rate/2")
+    for b, gap in ((1.4, 0.0012), (1.4, 0.012), (1.4, 0.12), (1, 0.01)):
+        f, v = run("free-pair.in", b=b, gap=gap, force=1), follow(poly_side, b, (gap, gap), force=1)
+        t.row(f"lubricateU/poly, radii 1 and {b:g}, gap {gap:g}, at rest", 0, 6 * PI * (f["along-1"] + b * f["along-2"]), 6 * PI * (v[0] + b * v[1]), good=b == 1)
+    f = run("free-pair.in", style="lubricateU", force=1)
+    t.row("lubricateU, gap 0.01, at rest", 0, 6 * PI * (f["along-1"] + f["along-2"]), 0, good=True)
+    for b, gap in ((1.4, 0.012), (5, 0.03), (1, 0.01)):
+        f, unit = run("free-pair.in", b=b, gap=gap, rate=0.1, angle=PI / 4, log=0), poly_side(1, b, gap, 0)[0] * (1 + b) * 0.05
+        t.row(f"lubricateU/poly without log terms, radii 1 and {b:g}, gap {gap:g}, in shear", 0, 6 * PI * (f["along-1"] + b * f["along-2"]) / unit, 2 * (1 - b) / (1 + b), good=b == 1)
+
+
+def iteration(t):
+    t.head("spin and slip of a free pair of equal spheres in shear, n at 0.6 rad to the flow, over what the style's own resistances ask for")
+    for style, gap, side, tolerance in (("lubricateU/poly", 0.01, poly_side, 1e-3), ("lubricateU/poly", 0.001, poly_side, 1e-3), ("lubricateU", 0.01, equal_side, 1e-4), ("lubricateU", 0.001, equal_side, 1e-4),
+                                        ("lubricateU", 0.0001, equal_side, 1e-4)):
+        f, ours = run("free-pair.in", style=style, gap=gap, rate=0.1, angle=0.6), [follow(side, 1, (gap, gap), rate=0.1, angle=0.6, tolerance=e) for e in (1e-13, tolerance)]
+        for what, k, name in (("spin", 4, "spin-1"), ("velocity across n", 2, "across-1")):
+            t.row(f"{style}, gap {gap:g}: {what}", 1, f[name] / ours[0][k], ours[1][k] / ours[0][k], good=(style, gap) == ("lubricateU", 0.01))
+    t.head("steps that end within 5 seconds of one core, of 1")
+    for log, b in ((1, 2), (0, 5), (1, 5)):
+        gap = 0.005 * (1 + b)
+        ended(t, f"lubricateU/poly, radii 1 and {b}, gap {gap:g}" + ("" if log else ", without log terms"), follow(poly_side, b, (gap, gap), force=1, log=log) is not None,
+              b=b, gap=gap, force=1, log=log)
+
+
+def ended(t, what, ends, **how):
+    f = run("free-pair.in", seconds=5, **how)
+    if "started" not in f:
+        t.complain("LAMMPS did not start")
+    t.row(what, 1, float("along-1" in f), float(ends), good=ends)
+
+
+def half_step(t):
+    t.head("closing speed of a free pair under a force along the flow, across a face over that inside the cell, without log terms; rate 0.1, dt 0.002")
+    speed = lambda f: f["along-1"] - f["along-2"]
+    for rate in (0.1, 0):
+        how = {"style": "lubricateU", "newton": "on", "force": 1, "log": 0, "rate": rate, "dt": 0.002}
+        found = speed(run("free-pair.in", x=39, **how)) / speed(run("free-pair.in", **how))
+        start = follow(equal_side, 1, (0.01, 0.01), force=1, log=0, tolerance=1e-4)
+        inside, face = (follow(equal_side, 1, (h, h), force=1, log=0, tolerance=1e-4) for h in
+                        (0.01 + 0.001 * (start[1] - start[0]) - lag for lag in (0, 0.001 * rate * 20)))     # gaps half a step later
+        t.row("lubricateU, newton on, pair across a face" + ("" if rate else ", at rest"), 1, found, (face[0] - face[1]) / (inside[0] - inside[1]), good=not rate)
+    t.head("the same with newton off: steps that end within 5 seconds of one core, of 1")
+    for style, side, tolerance in (("lubricateU", equal_side, 1e-4), ("lubricateU/poly", poly_side, 1e-3)):
+        for x in (20, 39):
+            lag = 0.002 * (x > 38)
+            ended(t, f"{style}, newton off, pair " + ("across a face" if lag else "inside"), follow(side, 1, (0.01 - lag, 0.01 + lag), force=1, log=0, tolerance=tolerance) is not None,
+                  style=style, x=x, force=1, log=0, rate=0.1, dt=0.002)
+
+
 GATE = (("--own poly", "lubrication-resistance", ("third law of R", "R symmetric", "R positive semidefinite", "Y_A")),
         ("--own poly", "noise-equal-pairs", ("pair noise: nothing outside the range of R", "pair noise: size")),
         ("--own equal", "noise-equal-pairs", ("R of lubrication: declared model",)),
@@ -227,7 +331,7 @@ def main():
     said = subprocess.run([LMP, "-h"], capture_output=True, text=True).stdout
     version = said.split("Simulator - ")[1].splitlines()[0] if "Simulator - " in said else "unknown"
     print(f"LAMMPS {version}\n| what | right | LAMMPS | from the cause |")
-    parts = (third_law, pair_noise, face_noise, sheared_spin, relative_spin, units, isotropic, flip, langevin, rerun, wide_gap)
+    parts = (third_law, pair_noise, face_noise, sheared_spin, relative_spin, units, isotropic, flip, langevin, rerun, wide_gap, drift, iteration, half_step)
     with ThreadPoolExecutor(max_workers=len(parts)) as pool:    # what takes long is the start of each `lmp`
         tables = list(pool.map(fill, parts)) + [fill(gate)]
     for t in tables:

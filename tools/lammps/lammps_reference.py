@@ -3,8 +3,8 @@
     --own theory      lubrication, drag and noise from validation/theory, contacts, integration, cell, images and lists from LAMMPS; for `run` alone
     --own reference   theory where no stock style is exact, else stock styles
 """
-import json, math, os
-from lammps_stock import NOISES, Stock, need, stop
+import json, math, os, sys
+from lammps_stock import NOISES, Stock, need
 
 
 class Exact(Stock):
@@ -48,7 +48,7 @@ class Theory(Exact):
     def command(self):
         host = os.path.join(os.path.dirname(os.path.realpath(__file__)), "lammps-host")
         if not os.path.exists(host):
-            stop(1, "the program lammps-host is not beside this one")
+            sys.exit("lammps-candidate: the program lammps-host is not beside this one")
         return [host, "in.lammps", "host.parameters"]
 
     def run_lammps(self, out):

@@ -3,21 +3,17 @@
 What stock styles have no exact equivalent of ends with exit code 77 and the reason. How LAMMPS (29 Sep 2021) differs from docs/formats.md, and
 what is done about it: docs/lammps.md, "What the adapter does about LAMMPS's conventions".
 """
-import csv, json, math, os, struct, subprocess, sys
+import csv, json, math, os, subprocess, sys
 
 PI = math.pi
 VOIGT = ((0, 3, 4), (3, 1, 5), (4, 5, 2))       # LAMMPS's order xx yy zz xy xz yz
-NOISES = {"drag_noise": "drag", "lubrication_noise": "lubrication"}
-
-
-def stop(code, text):
-    print("lammps-candidate: " + text if code == 1 else text, file=sys.stderr)
-    sys.exit(code)
+NOISES = ("drag_noise", "lubrication_noise")
 
 
 def need(condition, text):
     if not condition:
-        stop(77, text)
+        print(text, file=sys.stderr)
+        sys.exit(77)
 
 
 def only(where, what, known):
@@ -28,13 +24,14 @@ def only(where, what, known):
 class Stock:
     """The question in LAMMPS's axes: `case` and `scene` as read, cell, species, particles by state; its deck; its answer."""
     tells_apart = False     # whether the stresses of several pair forces are known
+    newton = "off"
 
     # ---- reading a case, and refusing what has no equivalent ----
 
-    def __init__(self, folder, own=None, newton=None):
+    def __init__(self, folder):
         self.case = json.load(open(os.path.join(folder, "case.json")))
         self.scene = scene = json.load(open(os.path.join(folder, self.case["scene"])))
-        self.protocol, self.forces, self.own = self.case["protocol"], scene.get("forces", {}), own
+        self.protocol, self.forces = self.case["protocol"], scene.get("forces", {})
         only(scene, "the key", "$schema about dimensions seed realisation fluid box shear species start forces dynamics run output")
         need(self.protocol in ("forces", "noise", "run"), f"this adapter does not answer protocol \"{self.protocol}\"")
         need(scene.get("dimensions", 3) == 3, "this adapter writes three-dimensional boxes only")
@@ -46,7 +43,6 @@ class Stock:
             only(species, "the species' key", "name radius density")
         self.radius = [s["radius"] for s in scene["species"]]
         self.mass = [4 / 3 * PI * s["density"] * s["radius"] ** 3 for s in scene["species"]]
-        self.newton = newton or ("on" if own == "equal" else "off")     # off: brownian draws anew on each side of a face; on: lubricate/poly refuses
         self.seed = (scene.get("seed", 1) + 104729 * scene.get("realisation", 0)) % 900000000 + 1
         self.eta, self.kT = scene.get("fluid", {}).get("viscosity"), scene.get("fluid", {}).get("kT", 0)
         self.read_box()
@@ -82,21 +78,20 @@ class Stock:
              "fix addtorque turns a group as a whole: no equivalent of an applied torque on each sphere")
         need("tether" not in self.forces or not self.rate, "fix spring/self keeps its anchors in the moving cell: a tether only without shear")
 
-    def check_forces(self):
+    def check_drag(self):
         need(not (self.forces.get("drag", {}).get("torque") and self.rate),
              "fix langevin damps spins towards zero, not towards half the vorticity: in shear \"torque\" must be false")
-        need(self.own or "lubrication" not in self.forces,
+
+    def check_forces(self):
+        self.check_drag()
+        need("lubrication" not in self.forces,
              "lubricate has other spin terms and wrong spins in shear, lubricate/poly breaks the third law at unequal radii: no equivalent of \"lubrication\"")
-        need(self.own != "equal" or "lubrication" not in self.forces or len(set(self.radius)) == 1, "lubricate takes spheres of one radius only")
-        for noise in NOISES:
-            need(self.own or noise not in self.forces or self.forces[noise]["distribution"] == "uniform",
-                 f"LAMMPS draws uniform numbers: {noise} must have \"distribution\": \"uniform\"")
+        need(self.forces.get("drag_noise", {}).get("distribution") != "gaussian", "LAMMPS draws uniform numbers: drag_noise must have \"distribution\": \"uniform\"")
 
     def read_protocol(self):
-        verlet, run, output = self.scene["dynamics"].get("verlet"), self.scene.get("run", {}), self.scene.get("output", {})
-        need(verlet, "fix nve/sphere is half-step velocity Verlet: only \"dynamics\": { \"verlet\": ... }")
-        self.dt = verlet["dt"]
-        need(isinstance(self.dt, (int, float)), "the step must be a number")
+        run, output = self.scene.get("run", {}), self.scene.get("output", {})
+        self.dt = self.scene["dynamics"].get("verlet", {}).get("dt")
+        need(isinstance(self.dt, (int, float)), "fix nve/sphere is half-step velocity Verlet with a step that is a number: only \"dynamics\": { \"verlet\": { \"dt\": ... } }")
         if self.protocol != "run":
             return
         self.steps = round(run["steps"] if "steps" in run else run["time"] / self.dt if "time" in run else run["strain"] / (abs(self.rate) * self.dt))
@@ -141,10 +136,12 @@ class Stock:
                 speeds += f"{id} " + " ".join(repr(c) for c in (*v, *w)) + "\n"
             f.write("\nVelocities\n\n" + speeds)
 
+    def pairs_of_types(self):
+        return [(i, j) for i in range(len(self.radius)) for j in range(i, len(self.radius))]
+
     def pair_styles(self, forces):
         """(style with its arguments, coefficients by pair of types, comment) of each pair force asked for."""
-        a, found, kind = self.radius, [], "/poly" if self.own == "poly" else ""
-        pairs = [(i, j) for i in range(len(a)) for j in range(i, len(a))]
+        a, found = self.radius, []
         if "contact" in forces:
             c = self.forces["contact"]
             gn = c.get("normal_damping", 0)
@@ -154,20 +151,12 @@ class Stock:
             found.append((style, ["* *"], "forces.contact: k_n delta, m_eff gamma_n dashpot; tangential spring k_t with Coulomb's cap, full radii as lever arms"))
         if "repulsion" in forces:
             r, coefficients = self.forces["repulsion"], []
-            for i, j in pairs:
+            for i, j in self.pairs_of_types():
                 kappa, touch = r["kappa_factor"] * (a[i] + a[j]), a[i] + a[j]
                 A = r["energy"] if r["form"] == "energy" else r["force"] * kappa
                 coefficients.append(f"{i + 1} {j + 1} {A!r} {kappa!r} {touch!r} 0 0 {touch + r['cutoff'] * kappa!r}")
             found.append((f"born {2 * max(a) * (1 + r['cutoff'] * r['kappa_factor'])!r}", coefficients,
                           "forces.repulsion: A exp(-h/kappa) is born's A exp((sigma - r)/rho) with C = D = 0"))
-        for name, head in (("lubrication", f"lubricate{kind} {self.eta!r} 1 0"), ("lubrication_noise", f"brownian{kind} {self.eta!r} 1 0")):
-            if name in forces:
-                l = self.forces["lubrication"]
-                inner, outer = (lambda i, j, g=g: (a[i] + a[j]) * (1 + g / 2) for g in (l["inner_gap"], l["outer_gap"]))
-                tail = f" {self.kT!r} {self.seed}" if name == "lubrication_noise" else ""
-                k = a.index(max(a))
-                found.append((f"{head} {inner(k, k)!r} {outer(k, k)!r}{tail} 1 0", [f"{i + 1} {j + 1} {inner(i, j)!r} {outer(i, j)!r}" for i, j in pairs],
-                              "forces.lubrication: LAMMPS's own near-field scalars, NOT those of the scene"))
         return found
 
     def neighbour_list(self):
@@ -240,10 +229,10 @@ class Stock:
         try:
             code = subprocess.run(words, cwd=out, capture_output=True).returncode
         except FileNotFoundError:
-            stop(1, f"the LAMMPS program \"{words[0]}\" was not found (Debian package lammps; or give its full path in the environment variable LMP)")
+            sys.exit(f"lammps-candidate: the LAMMPS program \"{words[0]}\" was not found (Debian package lammps; or give its full path in the environment variable LMP)")
         if code or not os.path.getsize(log):
             errors = [line.strip() for line in open(log) if line.startswith("ERROR")]
-            stop(1, f"LAMMPS stopped: {errors[-1] if errors else f'exit code {code}'} (see {log})")
+            sys.exit(f"lammps-candidate: LAMMPS stopped: {errors[-1] if errors else f'exit code {code}'} (see {log})")
 
     # ---- the answer ----
 
@@ -317,12 +306,10 @@ class Stock:
     def answer_noise(self, out):
         for noise in (n for n in NOISES if n in self.forces):
             path = os.path.join(out, f"lammps-{noise}.dump")
-            head = f"{{'descr': '<f8', 'fortran_order': False, 'shape': ({self.case['draws']}, {len(self.states[0])}, 6), }}"
-            with open(os.path.join(out, f"noise_{noise}.npy"), "wb") as f:
-                f.write(b"\x93NUMPY\x01\x00" + struct.pack("<H", 118) + (head.ljust(117) + "\n").encode())
+            with open(os.path.join(out, f"noise_{noise}.txt"), "w") as f:
                 for k, (_, _, rows) in enumerate(frames(path)):
                     for v in rows if k else ():     # the first frame is that of the set-up
-                        f.write(struct.pack("<6d", *self.vector(v[7:10]), *self.vector(v[10:13], self.handed)))
+                        f.write(" ".join(f"{c:.17g}" for c in self.vector(v[7:10]) + self.vector(v[10:13], self.handed)) + "\n")
             os.remove(path)
 
 

@@ -40,6 +40,9 @@ double dense_radius(const struct dense_start *s, size_t i);
 struct dense_events { size_t made, lost, slipping, sticking, contacts /* in the last frame */, remaps /* cell tilted past half its edge */; };
 bool dense_events_count(struct check_run *run, const struct dense_start *s, const char *out, struct dense_events *e);
 
+/* What it may be that two paths are so many radii apart where they are first compared. */
+const char *dense_path_likely(double early);
+
 void dense_viscosities(struct check_run *run);
 void dense_path(struct check_run *run);
 void contact_path(struct check_run *run);

@@ -5,8 +5,9 @@
  *
  *     z = 0 ,   u_z = 0 ,   w_x = w_y = 0          exactly, at every step
  *
- * Without noise the plane is a symmetry of three dimensions too: the same spheres in a scene of three dimensions take the same path, to
- * rounding. So 2D needs no reference: it is the 3D code with the motions taken away that symmetry would not make.
+ * under each equation of motion (check_flat_dynamics), and tables count two ways to move and one to turn. Without noise the plane is a symmetry
+ * of three dimensions too: the same spheres in a scene of three dimensions take the same path, to rounding. So 2D needs no reference: it is the
+ * 3D code with the motions taken away that symmetry would not make.
  */
 #include "two_bodies.h"
 
@@ -14,6 +15,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
+
+enum { HALF_SUM, SUM, TRAPEZOIDS, SLOPE_OF_HALF, SLOPE_OF_SUM };      /* what a column says of the three before it */
 
 /* Spheres of both species by turns on a square lattice with a little disorder, moving with the flow and at random, in the plane. */
 static struct state_row *start_flat(struct check_run *run, const struct model *m, size_t across, double kT)
@@ -36,7 +40,7 @@ static struct state_row *start_flat(struct check_run *run, const struct model *m
     return row;
 }
 
-static void judge_plane(struct check_run *run, const struct track *t)
+static void judge_plane(struct check_run *run, const char *what, const struct track *t)
 {
     double most = 0.0, motion = 0.0;
     size_t who = 0;
@@ -50,7 +54,7 @@ static void judge_plane(struct check_run *run, const struct track *t)
                 who = k % t->count;
             }
     }
-    check_error(run, INVARIANT, "nothing leaves the plane", most, 0.0, motion > 0.0 ? most : NAN, 0.0,
+    check_error(run, INVARIANT, what, most, 0.0, motion > 0.0 ? most : NAN, 0.0,
                 "in two dimensions sphere %zu leaves the plane: z, u_z, w_x or w_y is %.3g and not exactly 0", who + 1, most);
 }
 
@@ -73,7 +77,7 @@ void check_flat(struct check_run *run)
     solid = json_deep_copy(calm);
     scene_set(solid, "dimensions", json_integer(3));
     if (row && track_ask(run, "with-noise", scene, row, count, at, 32, &noisy)) {
-        judge_plane(run, &noisy);
+        judge_plane(run, "nothing leaves the plane", &noisy);
         track_free(&noisy);
     }
     if (row && track_ask(run, "two-dimensions", calm, row, count, at, 32, &flat)) {
@@ -91,4 +95,124 @@ void check_flat(struct check_run *run)
     json_decref(scene);
     json_decref(calm);
     json_decref(solid);
+}
+
+/* Numbers of one row of a table that follow from its others in two dimensions: the mean over two axes, the one spin. */
+static void judge_means(struct check_run *run, const char *out, const char *file, const char *columns, int of, const char *what)
+{
+    char path[PATH_LENGTH], why[WHY_LENGTH];
+    struct table t;
+    struct worst w = WORST_NONE;
+    double integral = 0.0, before = 0.0, lag = 0.0, size = 0.0;
+    path_join(path, out, file);
+    if (access(path, F_OK) != 0) {
+        check_skip(run, what, "the candidate writes no %s", file);
+        return;
+    }
+    if (!table_read(path, columns, &t, why)) {
+        check_garbage(run, why);
+        return;
+    }
+    for (size_t r = 0; r < t.rows; r++)
+        size = fmax(size, fabs(table_at(&t, r, 4)));
+    for (size_t r = 0; r < t.rows; r++) {
+        const bool first = r == 0 || (of != HALF_SUM && table_at(&t, r, 0) < table_at(&t, r - 1, 0));
+        const double mean = (table_at(&t, r, 1) + table_at(&t, r, 2) + table_at(&t, r, 3)) / (of == SUM || of == SLOPE_OF_SUM ? 1.0 : 2.0), now = table_at(&t, r, 0);
+        integral = first ? 0.0 : integral + 0.5 * (before + mean) * (now - lag);
+        const double slope = 0.5 * (first ? 0.0 : mean - before) / (first ? 1.0 : now - lag);
+        if (of < SLOPE_OF_HALF || !first)
+            worst_see(&w, table_at(&t, r, 4), of == TRAPEZOIDS ? integral : of >= SLOPE_OF_HALF ? slope : mean, size, r);
+        before = mean;
+        lag = now;
+    }
+    table_free(&t);
+    check_error(run, INVARIANT, what, w.measured, w.expected, w.error, run->gate_case->tolerance, "%s: row %zu says %s: in two dimensions there are two ways "
+                "to move and one to turn", what, w.at + 1, compare(&w));
+}
+
+/* Averages of temperatures are those of the table of temperatures beyond what is dropped. */
+static void judge_averages(struct check_run *run, const char *out, const char *what)
+{
+    char path[2][PATH_LENGTH], why[WHY_LENGTH];
+    struct table averages, temperatures;
+    struct worst w = WORST_NONE;
+    path_join(path[0], out, "averages.csv");
+    path_join(path[1], out, "temperature.csv");
+    if (access(path[0], F_OK) != 0 || access(path[1], F_OK) != 0) {
+        check_skip(run, what, "the candidate does not write both tables");
+        return;
+    }
+    if (!table_read(path[0], "quantity$,mean,discarded", &averages, why)) {
+        check_garbage(run, why);
+        return;
+    }
+    const bool read = table_read(path[1], "T,W", &temperatures, why);
+    for (size_t r = 0; read && r < averages.rows; r++) {
+        const char *name = table_word(&averages, r, 0);
+        const size_t column = strcmp(name, "W") == 0, first = (size_t)table_at(&averages, r, 2);
+        double mean = 0.0;
+        if ((strcmp(name, "T") != 0 && !column) || first >= temperatures.rows)
+            continue;
+        for (size_t k = first; k < temperatures.rows; k++)
+            mean += table_at(&temperatures, k, column) / (double)(temperatures.rows - first);
+        worst_see(&w, table_at(&averages, r, 1), mean, mean, r);
+    }
+    table_free(&averages);
+    if (!read) {
+        check_garbage(run, why);
+        return;
+    }
+    table_free(&temperatures);
+    check_error(run, INVARIANT, what, w.measured, w.expected, w.error, 1e-7, "%s: row %zu says %s, the mean of the table of temperatures", what, w.at + 1,
+                compare(&w));       /* written with nine digits */
+}
+
+static void judge_tables(struct check_run *run, const char *name)
+{
+    char folder[PATH_LENGTH], out[PATH_LENGTH], what[96];
+    path_join(folder, run->work, name);
+    path_join(out, folder, "out");
+    snprintf(what, sizeof what, "%s: temperature.csv: T", name);
+    judge_means(run, out, "temperature.csv", "time,T_x,T_y,T_z,T", HALF_SUM, what);
+    snprintf(what, sizeof what, "%s: temperature.csv: W", name);
+    judge_means(run, out, "temperature.csv", "time,W_x,W_y,W_z,W", SUM, what);
+    snprintf(what, sizeof what, "%s: averages.csv: T, W", name);
+    judge_averages(run, out, what);
+    snprintf(what, sizeof what, "%s: velocity_correlation.csv: integral", name);
+    judge_means(run, out, "velocity_correlation.csv", "lag,c_x,c_y,c_z,integral", TRAPEZOIDS, what);
+    snprintf(what, sizeof what, "%s: displacement.csv: D", name);
+    judge_means(run, out, "displacement.csv", "lag,msd_x,msd_y,msd_z,D", SLOPE_OF_HALF, what);
+    snprintf(what, sizeof what, "%s: displacement.csv: D_turn", name);
+    judge_means(run, out, "displacement.csv", "lag,turn_x,turn_y,turn_z,D_turn", SLOPE_OF_SUM, what);
+}
+
+/* Under each equation of motion of parameters.dynamics, from a thermal start: with everything on that acts nothing leaves the plane. */
+void check_flat_dynamics(struct check_run *run)
+{
+    const json_t *parameters = run->gate_case->parameters;
+    const size_t across = (size_t)scene_number(parameters, "across", 0), count = across * across;
+    const int at[2] = { 1, (int)scene_number(parameters, "steps", 0) };
+    const char *name;
+    json_t *dynamics;
+    json_object_foreach((json_t *)json_object_get(parameters, "dynamics"), name, dynamics)
+    {
+        json_t *scene = json_deep_copy(run->gate_case->scene);
+        struct model m;
+        struct track track;
+        scene_set(scene, "dynamics", json_deep_copy(dynamics));
+        scene_set(scene, "start.thermal", json_true());
+        scene_set(scene, "output.temperature", json_pack("{si}", "every", 3));
+        scene_set(scene, "output.averages", json_pack("{si}", "every", 3));
+        scene_set(scene, "output.displacement", json_pack("{si si}", "every", 3, "levels", 1));
+        scene_set(scene, "output.velocity_correlation", json_pack("{si si}", "every", 3, "levels", 1));
+        scene_set(scene, "seed", json_integer(run->seed));
+        struct state_row *row = model_read(run, scene, &m) ? start_flat(run, &m, across, scene_number(scene, "fluid.kT", NAN)) : NULL;
+        if (row && track_ask(run, name, scene, row, count, at, 2, &track)) {
+            judge_plane(run, name, &track);
+            judge_tables(run, name);
+            track_free(&track);
+        }
+        free(row);
+        json_decref(scene);
+    }
 }

@@ -396,4 +396,8 @@ static void check_cluster(struct check_run *run)
         judge_frozen(run, &m, &f, false);
 }
 
-const struct check noise_checks[] = { { "noise-pairs", check_pairs }, { "noise-cluster", check_cluster }, { "noise-uniform", check_uniform }, { "noise-images", check_noise_images }, { NULL, NULL } };
+const struct check noise_checks[] = {
+    { "noise-pairs", check_pairs },         { "noise-cluster", check_cluster },     { "noise-uniform", check_uniform },
+    { "noise-images", check_noise_images }, { "noise-again", check_noise_again },   { "noise-again-pairs", check_noise_again_pairs },
+    { NULL, NULL }
+};

@@ -67,5 +67,7 @@ double noise_declared(const struct subject *s, const char *key);       /* parame
 void subject_free(struct subject *s);
 void check_uniform(struct check_run *run);
 void check_noise_images(struct check_run *run);
+void check_noise_again(struct check_run *run);
+void check_noise_again_pairs(struct check_run *run);
 
 #endif

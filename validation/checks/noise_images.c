@@ -6,6 +6,8 @@
  *
  *     <F_x^2> = (2 kT/dt) R_xx ,   <T_y^2> = (2 kT/dt) R_yy of spins          R the candidate's own, both films together
  *
+ * and likewise along y and z, for a code may look at one edge of the cell only.
+ *
  * One set of random numbers for both films would double the first (equal pushes add up) and change the second. A ratio near 1 is asked for, by
  * an interval of four standard errors.
  */
@@ -15,23 +17,32 @@
 #include <stdlib.h>
 #include <string.h>
 
-void check_noise_images(struct check_run *run)
+/* The films stand across `axis`, along which the cell is as short as the scene's is along x. */
+static void try_axis(struct check_run *run, int axis)
 {
     static const char *const lubrication[1] = { "lubrication" };
-    static const struct { size_t at; const char *name; } watched[3] = { { 0, "force along the line" }, { 1, "force across it" }, { 4, "torque across it" } };
+    const struct { size_t at; const char *name; } watched[3] = { { (size_t)axis, "force along the line" }, { (size_t)(axis + 1) % 3, "force across it" },
+                                                                 { 3 + (size_t)(axis + 1) % 3, "torque across it" } };
     struct model m;
     struct frozen f = { .count = 2, .sizes = 1 };
     const size_t draws = (size_t)scene_number(run->gate_case->parameters, "draws", 0);
-    char out[PATH_LENGTH];
-    if (!model_read(run, run->gate_case->scene, &m))
+    char out[PATH_LENGTH], name[96];
+    json_t *turned = json_deep_copy(run->gate_case->scene), *lengths = json_array();
+    for (size_t k = 0; k < 3; k++)
+        json_array_append(lengths, json_array_get(scene_get(turned, "box.lengths"), (k + 3 - (size_t)axis) % 3));
+    scene_set(turned, "box.lengths", lengths);
+    if (!model_read(run, turned, &m)) {
+        json_decref(turned);
         return;
+    }
     f.size[0] = f.radius[0] = f.radius[1] = m.radius[0];
     f.species[0] = f.species[1] = 1;
     for (int k = 0; k < 3; k++) {
         f.x[0][k] = 0.21 * m.cell[k][k];
-        f.x[1][k] = f.x[0][k] + (k == 0 ? 0.5 * m.cell[0][0] : 0.0);
+        f.x[1][k] = f.x[0][k] + (k == axis ? 0.5 * m.cell[k][k] : 0.0);
     }
     json_t *scene = frozen_scene(run, &f);
+    scene_set(scene, "box.lengths", json_deep_copy(lengths));
     const double kT = scene_number(scene, "fluid.kT", NAN), dt = scene_number(scene, "dynamics.verlet.dt", NAN);
     double *R[1] = { calloc(144, sizeof(double)) }, *draw = NULL;
     struct state_row row[2];
@@ -40,7 +51,8 @@ void check_noise_images(struct check_run *run)
         memcpy(row[i].x, f.x[i], sizeof row[i].x);
     }
     const struct question q = { .protocol = "noise", .scene = scene, .state = row, .states = 2, .draws = draws };
-    if (measure_resistance(run, scene, &f, 1, lubrication, R) && check_ask(run, "draws", &q, out))
+    snprintf(name, sizeof name, "draws-%c", "xyz"[axis]);
+    if (measure_resistance(run, scene, &f, 1, lubrication, R) && check_ask(run, name, &q, out))
         draw = noise_draws(run, out, "noise_lubrication_noise.npy", draws, &f, sqrt(2.0 * kT / dt));
     for (size_t k = 0; k < 3 && draw; k++) {
         double sum = 0.0, squares = 0.0;
@@ -50,10 +62,18 @@ void check_noise_images(struct check_run *run)
             squares += z * z;
         }
         const double mean = sum / (double)draws, error = sqrt((squares / (double)draws - mean * mean) / (double)draws);
-        check_interval(run, INVARIANT, watched[k].name, mean, error, 1.0, 0.2, "two films between the same spheres: the variance of the %s is %.4g times what "
-                       "the candidate's own resistance asks for; both draw the same random numbers, or one draws none", watched[k].name, mean);
+        snprintf(name, sizeof name, "%c: %s", "xyz"[axis], watched[k].name);
+        check_interval(run, INVARIANT, name, mean, error, 1.0, 0.2, "two films between the same spheres, across %c: the variance of the %s is %.4g times what "
+                       "the candidate's own resistance asks for; both draw the same random numbers, or one draws none", "xyz"[axis], watched[k].name, mean);
     }
     free(R[0]);
     free(draw);
     json_decref(scene);
+    json_decref(turned);
+}
+
+void check_noise_images(struct check_run *run)
+{
+    for (int axis = 0; axis < 3; axis++)
+        try_axis(run, axis);
 }

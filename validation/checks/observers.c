@@ -34,6 +34,30 @@ void film_peculiar(const struct film *f, const struct track_point *p, double c[3
     }
 }
 
+static void find_axes(struct film *f)
+{
+    double fastest = 0.0;
+    for (int c = 0; c < 3; c++)
+        f->axis[c] = c;
+    for (int c = 0; c < 9; c++)
+        if (fabs(f->m.gradient[c / 3][c % 3]) > fastest) {
+            fastest = fabs(f->m.gradient[c / 3][c % 3]);
+            f->axis[0] = c / 3, f->axis[1] = c % 3, f->axis[2] = 3 - c / 3 - c % 3;
+        }
+}
+
+double film_rate(const struct film *f) { return f->m.gradient[f->axis[0]][f->axis[1]]; }
+
+void film_stress_columns(const struct film *f, const char *origin, char columns[400])
+{
+    static const int pair[5][2] = { { 0, 0 }, { 1, 1 }, { 2, 2 }, { 0, 1 }, { 1, 0 } };
+    *columns = 0;
+    for (int k = 0; k < 5; k++) {
+        const size_t used = strlen(columns);
+        snprintf(columns + used, 400 - used, "%s%s_%c%c", k ? "," : "", origin, "xyz"[f->axis[pair[k][0]]], "xyz"[f->axis[pair[k][1]]]);
+    }
+}
+
 /* All pairs of a frame, whose cell is that of its time. */
 static bool find_pairs(struct film *f, size_t frame)
 {
@@ -249,25 +273,24 @@ static void judge_viscosity(const struct film *f)
     static const char *const parts[4] = { "contact_normal", "contact_tangential", "lubrication", "drag" };
     struct table t, stress[4];
     struct worst w = WORST_NONE, differences = WORST_NONE;
-    const double unit = f->m.viscosity * f->m.gradient[0][1];
+    const double unit = f->m.viscosity * film_rate(f);
     if (!film_table(f, "viscosity.csv", "step,eta_contact_normal,eta_contact_tangential,eta_lubrication,eta_drag,eta_r,N1,N2,pressure", &t))
         return;
     int opened = 0;
     for (; opened < 4; opened++) {
         char columns[400];
-        const char *p = parts[opened];
-        snprintf(columns, sizeof columns, "step,%s_xx,%s_yy,%s_zz,%s_xy,%s_yx", p, p, p, p, p);
+        film_stress_columns(f, parts[opened], columns);
         if (!film_table(f, "stress.csv", columns, &stress[opened]))
             break;
     }
     for (size_t r = 0; opened == 4 && r < t.rows && r < stress[0].rows; r++) {
         double diagonal[3] = { 0 }, shear = 0.0;
         for (size_t k = 0; k < 4; k++) {
-            const double own = 0.5 * (table_at(&stress[k], r, 4) + table_at(&stress[k], r, 5));
+            const double own = 0.5 * (table_at(&stress[k], r, 3) + table_at(&stress[k], r, 4));
             worst_see(&w, table_at(&t, r, 1 + k), own / unit, 1.0, r);
             shear += own;
             for (size_t c = 0; c < 3; c++)
-                diagonal[c] += table_at(&stress[k], r, 1 + c);
+                diagonal[c] += table_at(&stress[k], r, c);
         }
         worst_see(&w, table_at(&t, r, 5), 1.0 + shear / unit, 1.0, r);
         worst_see(&differences, table_at(&t, r, 6), diagonal[0] - diagonal[1], fabs(unit), r);
@@ -387,9 +410,20 @@ void check_observers(struct check_run *run)
     scene_set(f.scene, "box.lengths", json_pack("[fff]", edge, edge, edge));
     scene_set(f.scene, "seed", json_integer(run->seed));
     scene_set(f.scene, "output.stress", json_pack("{si}", "every", f.every));
-    bool good = f.row && f.near && f.nears && model_read(run, f.scene, &f.m) && packing_make(kind, 2, edge, f.m.gradient[0][1], run->seed, f.row, why);
+    bool good = f.row && f.near && f.nears && model_read(run, f.scene, &f.m) && packing_make(kind, 2, edge, 0.0, run->seed, f.row, why);
     if (!good)
         check_garbage(run, why);
+    find_axes(&f);
+    for (size_t i = 0; good && i < f.count; i++) {      /* with the flow */
+        struct track_point at = { .u = { 0 } };
+        double c[3], w[3];
+        memcpy(at.x, f.row[i].x, sizeof at.x);
+        film_peculiar(&f, &at, c, w);
+        for (int k = 0; k < 3; k++) {
+            f.row[i].u[k] = -c[k];
+            f.row[i].w[k] = -w[k];
+        }
+    }
     good = good && record(&f, "watched", true, &f.track);
     for (size_t s = 0; good && s < f.frames; s++)
         good = find_pairs(&f, s);

@@ -16,15 +16,18 @@ struct film {
     int every;
     double begin;                   /* time of the first frame */
     double dt, kT, range;
+    int axis[3];                    /* flow, gradient and vorticity of the fastest shear; x, y, z at rest */
     char out[PATH_LENGTH];
 };
-
 
 double film_radius(const struct film *f, size_t i);
 /* Velocity and spin without those of the flow. */
 void film_peculiar(const struct film *f, const struct track_point *p, double c[3], double w[3]);
 /* False where the candidate has not written the table (skipped) or it cannot be read (recorded). */
 bool film_table(const struct film *f, const char *file, const char *columns, struct table *t);
+/* Columns ff, gg, vv, fg, gf of one origin of stress, by the axes of the fastest shear; and its rate. */
+void film_stress_columns(const struct film *f, const char *origin, char columns[400]);
+double film_rate(const struct film *f);
 /* The frame of a row whose first column is the step; f->frames where there is none. */
 size_t film_frame(const struct film *f, const struct table *t, size_t row);
 void film_judge(const struct film *f, const char *what, const struct worst *w);

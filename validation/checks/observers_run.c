@@ -184,7 +184,7 @@ void film_judge_distribution(const struct film *f)
     check_error(f->run, INVARIANT, "pair_distribution.csv: U", U.measured, U.expected, U.error, 1e-7, "row %zu: U is %s; -kT ln g gives that", U.at + 1, compare(&U));
 }
 
-/* Both ends of each pair within the slab around the plane of shear, x along y here. */
+/* Both ends of each pair within the slab around the plane of shear. */
 void film_judge_plane(const struct film *f)
 {
     struct table t;
@@ -199,9 +199,9 @@ void film_judge_plane(const struct film *f)
         for (size_t k = 0; k < f->nears[s]; k++)
             for (int end = -1; end <= 1; end += 2) {
                 const struct near_pair *pair = &f->near[s][k];
-                const double r = end * pair->distance, column = floor((r * pair->n[0] + range) / width), row = floor((r * pair->n[1] + range) / width);
+                const double r = end * pair->distance, column = floor((r * pair->n[f->axis[0]] + range) / width), row = floor((r * pair->n[f->axis[1]] + range) / width);
                 const size_t at = (size_t)(row * bins + column);
-                if (fabs(r * pair->n[2]) < slab && column >= 0 && column < bins && row >= 0 && row < bins && at < t.rows)
+                if (fabs(r * pair->n[f->axis[2]]) < slab && column >= 0 && column < bins && row >= 0 && row < bins && at < t.rows)
                     found[at] += 1.0;
             }
     const double ideal = N * (N - 1.0) / f->m.volume * width * width * 2.0 * slab * (double)f->frames;
@@ -221,7 +221,7 @@ void film_judge_plane(const struct film *f)
 
 /* --- stresses --- */
 
-/* The sum over origins without the kinetic and the noise part, as stress.csv gives them: xx, yy, zz, xy, yx of each of its rows. Null: no table. */
+/* The sum over origins without the kinetic and the noise part, as stress.csv gives them: ff, gg, vv, fg, gf of each of its rows. Null: no table. */
 static double (*total_stress(const struct film *f, size_t *rows))[5]
 {
     static const char *const parts[4] = { "contact_normal", "contact_tangential", "lubrication", "drag" };
@@ -229,8 +229,7 @@ static double (*total_stress(const struct film *f, size_t *rows))[5]
     for (int k = 0; k < 4; k++) {
         struct table t;
         char columns[400];
-        const char *p = parts[k];
-        snprintf(columns, sizeof columns, "%s_xx,%s_yy,%s_zz,%s_xy,%s_yx", p, p, p, p, p);
+        film_stress_columns(f, parts[k], columns);
         if (!film_table(f, "stress.csv", columns, &t)) {
             free(S);
             return NULL;
@@ -250,7 +249,7 @@ void film_judge_stress_table(const struct film *f)
     struct table t;
     struct worst strain = WORST_NONE, eta = WORST_NONE;
     size_t rows = 0;
-    const double rate = f->m.gradient[0][1], unit = f->m.viscosity * rate;
+    const double rate = film_rate(f), unit = f->m.viscosity * rate;
     double (*S)[5] = rate != 0.0 ? total_stress(f, &rows) : NULL;
     if (S && film_table(f, "stress.csv", "step,time,strain,eta_r", &t)) {
         for (size_t r = 0; r < rows && r < t.rows; r++) {
@@ -366,7 +365,7 @@ static bool series_of(const struct film *f, const char *name, double (*S)[5], do
         film_temperatures(f, s, 0, T);
         for (size_t k = 0; k < f->nears[s]; k++)
             touching += f->near[s][k].gap < 0.0;
-        const double value[8] = { shear, 1.0 + shear / (f->m.viscosity * f->m.gradient[0][1]), S[s][0] - S[s][1], S[s][1] - S[s][2],
+        const double value[8] = { shear, 1.0 + shear / (f->m.viscosity * film_rate(f)), S[s][0] - S[s][1], S[s][1] - S[s][2],
                                   -(S[s][0] + S[s][1] + S[s][2]) / 3.0, (T[0] + T[1] + T[2]) / 3.0, (T[3] + T[4] + T[5]) / 3.0, 2.0 * touching / (double)f->count };
         x[s] = value[which];
     }

@@ -13,5 +13,6 @@ void pair_drag(struct check_run *run);          /* one-body drag in many flows *
 void pair_units(struct check_run *run);         /* the same scene in other units */
 void pair_repulsion(struct check_run *run);     /* exponential repulsion and its cut-off */
 void pair_applied(struct check_run *run);       /* constant forces and torques by species */
+void pair_cut_off(struct check_run *run);       /* exactly at the cut-offs of lubrication and repulsion */
 
 #endif

@@ -328,6 +328,9 @@ const char *compare(const struct worst *w)
         snprintf(text, sizeof text, "nothing where %.6g is expected", w->expected);
     else if (fabs(w->expected) <= rounding * fabs(w->measured))
         snprintf(text, sizeof text, "%.6g where nothing is expected", w->measured);
+    else if (fabs(w->measured / w->expected - 1) < FEW_DIGITS)
+        snprintf(text, sizeof text, "%.12g where %.12g is expected, %.2g of it too %s", w->measured, w->expected,
+                 fabs(w->measured / w->expected - 1), fabs(w->measured) > fabs(w->expected) ? "much" : "little");
     else
         snprintf(text, sizeof text, "%.6g where %.6g is expected, %.6g of it", w->measured, w->expected,
                  w->measured / w->expected);

@@ -69,6 +69,7 @@ void pattern_see(struct pattern *p, const double *measured, const double *expect
         p->nothing++;
     if (wrong && !isnan(ratio) && beside > fmax(p->tolerance * scale, same * sqrt(own)))
         p->scattered = true;
+    p->off = fmax(p->off, off / scale);
     put(&p->all, wrong, ratio);
     put(bin_of(p->size, &p->sizes, PATTERN_SIZES, size_ratio), wrong, ratio);
     if (!isnan(xi))
@@ -165,7 +166,9 @@ static void how_much(const struct pattern *p, bool limited, char text[TEXT])
     for (size_t k = 0; k < p->sizes; k++)
         if (fabs(p->size[k].key - 1) < 1e-9 && p->size[k].wrong)
             snprintf(equal, sizeof equal, " (%.4g for equal radii)", p->size[k].low);
-    if (p->nothing == p->all.wrong)
+    if (p->off < FEW_DIGITS)
+        snprintf(text, TEXT, "right to %.1g", p->off);
+    else if (p->nothing == p->all.wrong)
         snprintf(text, TEXT, "nothing%s", everywhere ? " at all: the term is missing" : " where it is wrong: the term is missing there");
     else if (p->unexpected == p->all.wrong)
         snprintf(text, TEXT, "something where nothing is expected");

@@ -20,6 +20,7 @@ struct pattern {
     const char *of_size;                        /* what the size ratio is called: "a_2/a_1" */
     bool scattered;                             /* some wrong vector is not along the expected one: no single ratio */
     size_t nothing, unexpected;                 /* wrong states where nothing is measured, or nothing expected */
+    double off;                                 /* largest error over its scale */
 };
 
 void pattern_start(struct pattern *p, double tolerance);

@@ -114,6 +114,8 @@ void check_resume(struct check_run *run)
         char file[96];
         snprintf(file, sizeof file, "%s.csv", table);
         judge_table(run, file, out[0], out[1]);
+        if (scene_get(tables, "pair_distribution.plane") && strcmp(table, "pair_distribution") == 0)
+            judge_table(run, "pair_plane.csv", out[0], out[1]);
     }
     for (int k = 0; k < 2; k++)
         track_free(&track[k]);

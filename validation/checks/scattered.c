@@ -13,6 +13,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 struct scattered { struct model m; size_t pairs; struct state_row *row; double (*n)[3], *overlap; };
 
@@ -139,6 +140,42 @@ static void check_thrown(struct check_run *run)
     json_decref(scene);
 }
 
+/* The kinetic stress at the end, -(1/V) sum of m c (x) c over the free spheres, c without the flow: a driven one has no mass to speak of. */
+static void judge_kinetic(struct check_run *run, const char *dynamics, struct scattered *s, const struct track *track)
+{
+    char name[96], out[PATH_LENGTH], path[PATH_LENGTH], why[WHY_LENGTH];
+    double expected[9] = { 0 };
+    struct table stress;
+    struct worst w = WORST_NONE;
+    snprintf(name, sizeof name, "%s: kinetic stress", dynamics);
+    path_join(out, run->work, dynamics);
+    path_join(path, out, "out/stress.csv");
+    if (access(path, F_OK) != 0) {
+        check_skip(run, name, "the candidate writes no stress.csv");
+        return;
+    }
+    if (!table_read(path, "kinetic_xx,kinetic_xy,kinetic_xz,kinetic_yx,kinetic_yy,kinetic_yz,kinetic_zx,kinetic_zy,kinetic_zz", &stress, why)) {
+        check_garbage(run, why);
+        return;
+    }
+    for (size_t k = 0; k < 2 * s->pairs; k++) {
+        const struct track_point *p = track_at(track, 0, k);
+        const size_t kind = (size_t)s->row[k].species - 1;
+        const double mass = 4.0 / 3.0 * M_PI * s->m.density[kind] * pow(s->m.radius[kind], 3);
+        double c[3];
+        apply(s->m.gradient, p->x, c);
+        for (int v = 0; v < 3; v++)
+            c[v] = p->u[v] - c[v];
+        for (int v = 0; v < 9 && !s->m.driven[kind]; v++)
+            expected[v] -= mass * c[v / 3] * c[v % 3] / s->m.volume;
+    }
+    for (size_t v = 0; v < 9; v++)
+        worst_see(&w, table_at(&stress, stress.rows - 1, v), expected[v], fabs(expected[0] + expected[4] + expected[8]), v);
+    table_free(&stress);
+    check_error(run, MODEL, name, w.measured, w.expected, w.error, run->gate_case->tolerance, "with %s the kinetic stress of free spheres among driven ones "
+                "is %s in component %zu: of its own velocities less the flow's, and of the free spheres only", dynamics, compare(&w), w.at + 1);
+}
+
 /* Driven spheres among free ones, under each equation of motion: they go where and turn as the scene says, to rounding. */
 static void check_driven(struct check_run *run)
 {
@@ -151,11 +188,14 @@ static void check_driven(struct check_run *run)
     {
         json_t *scene = json_deep_copy(run->gate_case->scene);
         const json_t *motion = scene_get(json_array_get(scene_get(scene, "species"), 1), "motion");
-        const double dt = scene_number(settings, "dt", NAN);
+        char step[96];
         struct scattered s = { 0 };
         struct track track;
         struct worst w = WORST_NONE;
-        scene_set(scene, "dynamics", json_pack("{sO}", dynamics, settings));
+        scene_set(scene, "dynamics", json_deep_copy(settings));
+        scene_set(scene, "output.stress.every", json_integer(at));
+        step_key(scene, step);
+        const double dt = scene_number(scene, step, NAN);
         if (model_read(run, scene, &s.m) && scatter(run, (size_t)scene_number(parameters, "across", 0), open, 0.02, 0.05, &s)
             && track_ask(run, dynamics, scene, s.row, 2 * s.pairs, &at, 1, &track)) {
             for (size_t k = 0; k < 2 * s.pairs; k++) {
@@ -170,6 +210,7 @@ static void check_driven(struct check_run *run)
             }
             check_error(run, INVARIANT, dynamics, w.measured, w.expected, w.error, run->gate_case->tolerance,
                         "with %s driven sphere %zu does not keep the motion that the scene gives it: place, velocity or spin is %s", dynamics, w.at + 1, compare(&w));
+            judge_kinetic(run, dynamics, &s, &track);
             track_free(&track);
         }
         scattered_free(&s);
@@ -231,4 +272,145 @@ static void check_sweeps(struct check_run *run)
     json_decref(scene);
 }
 
-const struct check scattered_checks[] = { { "scattered-pairs", check_frozen }, { "thrown-pairs", check_thrown }, { "driven-pairs", check_driven }, { "sweeps-or-global", check_sweeps }, { NULL, NULL } };
+/* One step of a run so short that nothing moves noticeably: m du and I dw over dt are the forces that the candidate itself tells of that state. */
+static void judge_step(struct check_run *run, const char *label, json_t *scene, const struct scattered *s, const struct forces *told)
+{
+    static const char *const names[2] = { "velocities", "spins" };
+    const int at = 1;
+    struct track track;
+    struct worst w[2] = { WORST_NONE, WORST_NONE };
+    double largest[2] = { 0 };
+    char step[96], name[96];
+    step_key(scene, step);
+    const double dt = scene_number(scene, step, NAN);
+    if (!track_ask(run, label, scene, s->row, 2 * s->pairs, &at, 1, &track))
+        return;
+    for (size_t k = 0; k < 2 * s->pairs; k++)
+        for (size_t c = 0; c < 6; c++)
+            largest[c / 3] = fmax(largest[c / 3], fabs(forces_at(told, 0, "total", (int)k + 1)[c]));
+    for (size_t k = 0; k < 2 * s->pairs; k++) {
+        const struct track_point *p = track_at(&track, 0, k);
+        const size_t kind = (size_t)s->row[k].species - 1;
+        const double a = s->m.radius[kind], mass = 4.0 / 3.0 * M_PI * s->m.density[kind] * a * a * a, inertia = 0.4 * mass * a * a;
+        for (size_t c = 0; c < 3; c++) {
+            worst_see(&w[0], mass * (p->u[c] - s->row[k].u[c]) / dt, forces_at(told, 0, "total", (int)k + 1)[c], largest[0], k);
+            if (isfinite(p->w[c]))
+                worst_see(&w[1], inertia * (p->w[c] - s->row[k].w[c]) / dt, forces_at(told, 0, "total", (int)k + 1)[3 + c], largest[1], k);
+        }
+    }
+    track_free(&track);
+    for (int part = 0; part < 2; part++) {
+        snprintf(name, sizeof name, "%s: %s", label, names[part]);
+        check_error(run, INVARIANT, name, w[part].measured, w[part].expected, w[part].error, run->gate_case->tolerance,
+                    "%s: what changes the %s of sphere %zu is %s: a run does not add up the forces that the candidate tells of the same state", label,
+                    names[part], w[part].at + 1, compare(&w[part]));
+    }
+}
+
+static void check_one_step(struct check_run *run)
+{
+    const json_t *parameters = run->gate_case->parameters;
+    const bool open[3] = { false, false, false };
+    json_t *scene = json_deep_copy(run->gate_case->scene), *dynamics;
+    struct scattered s = { 0 };
+    struct forces told;
+    char out[PATH_LENGTH], path[PATH_LENGTH], why[WHY_LENGTH];
+    const char *label;
+    bool good = model_read(run, scene, &s.m) && scatter(run, (size_t)scene_number(parameters, "across", 0), open, -0.02, 0.05, &s);
+    gsl_rng *random = pair_random(run);
+    for (size_t k = 0; k < 2 * s.pairs && good; k++) {
+        random_vector(random, 0.7, s.row[k].u);
+        random_vector(random, 0.5, s.row[k].w);
+    }
+    gsl_rng_free(random);
+    const struct question q = { .protocol = "forces", .scene = scene, .state = s.row, .states = 2 * s.pairs };
+    good = good && check_ask(run, "told", &q, out);
+    path_join(path, out, "forces.csv");
+    if (good && !(good = forces_read(path, 1, 2 * s.pairs, "total", &told, why)))
+        check_garbage(run, why);
+    json_object_foreach(good ? (json_t *)json_object_get(parameters, "dynamics") : NULL, label, dynamics)
+    {
+        scene_set(scene, "dynamics", json_deep_copy(dynamics));
+        judge_step(run, label, scene, &s, &told);
+    }
+    if (good)
+        forces_free(&told);
+    scattered_free(&s);
+    json_decref(scene);
+}
+
+/*
+ * The stress of a run against its own motion. Only pair forces act, noise too, and each pair is alone; in velocity Verlet of either form
+ *
+ *     m (x(n+1) - 2 x(n) + x(n-1))/dt^2 = F(n) ,      V sigma(n) = sum over pairs of F_i (x) (x_j - x_i)
+ *
+ * is the force that acted at step n, whatever it is made of, and what all its origins together must have booked.
+ */
+static void judge_virial(struct check_run *run, const char *label, const struct scattered *s, const struct track *track, double dt)
+{
+    size_t k, at = track->steps / 2;
+    json_t *origin;
+    double expected[9] = { 0 }, booked[9] = { 0 }, size = 0.0;
+    struct worst w = WORST_NONE;
+    char out[PATH_LENGTH], path[PATH_LENGTH], why[WHY_LENGTH], columns[512], name[96];
+    for (size_t pair = 0; pair < s->pairs; pair++) {
+        const struct track_point *before = track_at(track, at - 1, 2 * pair), *now = track_at(track, at, 2 * pair), *after = track_at(track, at + 1, 2 * pair);
+        const size_t kind = (size_t)s->row[2 * pair].species - 1;
+        const double mass = 4.0 / 3.0 * M_PI * s->m.density[kind] * pow(s->m.radius[kind], 3);
+        for (int v = 0; v < 9; v++)
+            expected[v] += mass * (after->x[v / 3] - 2.0 * now->x[v / 3] + before->x[v / 3]) / (dt * dt)
+                           * (track_at(track, at, 2 * pair + 1)->x[v % 3] - now->x[v % 3]) / s->m.volume;
+    }
+    path_join(out, run->work, label);
+    path_join(path, out, "out/stress.csv");
+    json_array_foreach(json_object_get(run->gate_case->parameters, "origins"), k, origin)
+    {
+        const char *o = json_string_value(origin);
+        struct table t;
+        snprintf(columns, sizeof columns, "%s_xx,%s_xy,%s_xz,%s_yx,%s_yy,%s_yz,%s_zx,%s_zy,%s_zz", o, o, o, o, o, o, o, o, o);
+        if (!table_read(path, columns, &t, why)) {
+            check_garbage(run, why);
+            return;
+        }
+        for (size_t v = 0; v < 9; v++)
+            booked[v] += table_at(&t, at, v);
+        table_free(&t);
+    }
+    for (size_t v = 0; v < 9; v++)
+        size = fmax(size, fabs(expected[v]));
+    for (size_t v = 0; v < 9; v++)
+        worst_see(&w, booked[v], expected[v], size, v);
+    snprintf(name, sizeof name, "%s: stress", label);
+    check_error(run, INVARIANT, name, w.measured, w.expected, w.error, run->gate_case->tolerance, "%s: component %zu of the stress of all pair forces and their "
+                "noise is %s; the forces that moved the pairs give that", label, w.at + 1, compare(&w));
+}
+
+static void check_virial(struct check_run *run)
+{
+    const json_t *parameters = run->gate_case->parameters;
+    const bool open[3] = { false, false, false };
+    json_t *scene = json_deep_copy(run->gate_case->scene), *dynamics;
+    int at[9];
+    const char *label;
+    struct scattered s = { 0 };
+    for (int k = 0; k < 9; k++)
+        at[k] = k;
+    scene_set(scene, "seed", json_integer(run->seed));
+    scene_set(scene, "output.stress.every", json_integer(1));
+    const bool good = model_read(run, scene, &s.m) && scatter(run, (size_t)scene_number(parameters, "across", 0), open, -0.02, 0.05, &s);
+    json_object_foreach(good ? (json_t *)json_object_get(parameters, "dynamics") : NULL, label, dynamics)
+    {
+        struct track track;
+        char step[96];
+        scene_set(scene, "dynamics", json_deep_copy(dynamics));
+        step_key(scene, step);
+        if (track_ask(run, label, scene, s.row, 2 * s.pairs, at, 9, &track)) {
+            judge_virial(run, label, &s, &track, scene_number(scene, step, NAN));
+            track_free(&track);
+        }
+    }
+    scattered_free(&s);
+    json_decref(scene);
+}
+
+const struct check scattered_checks[] = { { "scattered-pairs", check_frozen }, { "thrown-pairs", check_thrown }, { "driven-pairs", check_driven }, { "one-step", check_one_step }, { "virial", check_virial }, { "sweeps-or-global", check_sweeps }, { NULL, NULL } };

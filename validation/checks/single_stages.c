@@ -258,7 +258,7 @@ void check_stages_pair(struct check_run *run)
     double G[3][3], way;
     bool good = model_read(run, scene, &m);
     const size_t stages = read_stages(scene_get(scene, "stages"), stage);
-    const double a = m.radius[0], n[3] = { 0.36, 0.48, 0.8 }, rate = scene_number(parameters, "rate", NAN);
+    const double a = m.radius[0], n[3] = { 0.36, 0.48, 0.8 }, rate = scene_number(parameters, "rate", NAN), apart = scene_number(parameters, "apart", 1.01);
     theory_driven_flow(stage, stages, 0.0, G, &way);
     for (int k = 0; k < 8; k++)
         at[k] = (int)scene_number(parameters, "steps", NAN) / 8 * (k + 1);
@@ -266,7 +266,7 @@ void check_stages_pair(struct check_run *run)
         for (int side = 0; side < 2; side++) {
             start[side] = (struct state_row){ .id = side + 1, .species = m.species > 1 ? side + 1 : 1 };
             for (int c = 0; c < 3; c++)
-                start[side].x[c] = (face ? 0.0 : 0.5 * m.cell[c][c]) + (side ? 1.0 : -1.0) * a * 1.01 * n[c];
+                start[side].x[c] = (face ? 0.0 : 0.5 * m.cell[c][c]) + (side ? 1.0 : -1.0) * a * apart * n[c];
             apply(G, start[side].x, start[side].u);
         }
         good = track_ask(run, face ? "across-faces" : "inside", scene, start, 2, at, 8, &track[face]);
