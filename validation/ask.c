@@ -112,9 +112,14 @@ static size_t particles_of(const struct question *q)
 /* `folder`: run->work/<name> or a part of it; `name` is for people. */
 static bool ask(struct check_run *run, const char *folder, const char *name, const struct question *q, char out[PATH_LENGTH])
 {
-    char case_dir[PATH_LENGTH], why[WHY_LENGTH];
+    char case_dir[PATH_LENGTH], asked[PATH_LENGTH], why[WHY_LENGTH];
     path_join(case_dir, folder, "case");
     path_join(out, folder, "out");
+    path_join(asked, case_dir, "case.json");
+    if (!run->candidate->offline && access(asked, F_OK) == 0) {    /* its answer would be mixed with the first one's */
+        check_error(run, INVARIANT, "case folder", NAN, NAN, NAN, NAN, "the gate itself failed: two questions are called %s", name);
+        return false;
+    }
     if (!folder_make(case_dir, why) || !folder_make(out, why) || !write_case(run, name, q, case_dir, why)) {
         check_error(run, INVARIANT, "case folder", NAN, NAN, NAN, NAN, "the gate itself failed: %s", why);
         return false;

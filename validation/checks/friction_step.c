@@ -248,7 +248,7 @@ static void judge_step(struct check_run *run, const struct model *m, const struc
     for (int k = 0; k < KINDS; k++)
         s.R[k] = malloc(s.size * s.size * sizeof(double));
     gsl_matrix *C = measure_response(run, scene, f, root);
-    if (C && measure_resistance(run, scene, f, STREAMS, force, s.R)) {
+    if (C && measure_resistance(run, "columns-of-R", scene, f, STREAMS, force, s.R)) {
         gsl_matrix *declared = declared_response(m, f, s.R, s.dt, sweeps, root);
         noise_asked(C, s.R[FRICTION_STEP]);
         judge_growth(run, s.R[FRICTION_STEP], s.size);

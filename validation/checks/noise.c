@@ -370,7 +370,7 @@ static void judge_frozen(struct check_run *run, const struct model *m, const str
     s.draws = (size_t)run->samples * (size_t)scene_number(run->gate_case->parameters, "draws", 0);
     for (int k = 0; k < STREAMS; k++)
         s.R[k] = malloc(s.size * s.size * sizeof(double));
-    if (measure_resistance(run, scene, f, STREAMS, force_of, s.R)) {
+    if (measure_resistance(run, "columns-of-R", scene, f, STREAMS, force_of, s.R)) {
         for (int k = 0; k < STREAMS; k++)
             judge_resistance(&s, k, s.R[k]);
         judge_model(&s, m);

@@ -27,10 +27,10 @@ bool frozen_cluster(struct check_run *run, const struct model *m, struct frozen 
 json_t *frozen_scene(struct check_run *run, const struct frozen *f);
 
 /*
- * R of one force by columns, R[.][k] = -(F(unit velocity k) - F(rest)), for the force names given; each 6N x 6N. False after
+ * R of each force named by columns, from a question called `name`; R[.][k] = -(F(unit velocity k) - F(rest)), for the force names given; each 6N x 6N. False after
  * recording what is wrong.
  */
-bool measure_resistance(struct check_run *run, json_t *scene, const struct frozen *f, size_t forces, const char *const force[],
+bool measure_resistance(struct check_run *run, const char *name, json_t *scene, const struct frozen *f, size_t forces, const char *const force[],
                         double *R[]);
 /* The same for lubrication from the declared model, all pairs and images. */
 void theory_resistance(const struct model *m, const struct frozen *f, double *R);

@@ -51,8 +51,10 @@ static void try_axis(struct check_run *run, int axis)
         memcpy(row[i].x, f.x[i], sizeof row[i].x);
     }
     const struct question q = { .protocol = "noise", .scene = scene, .state = row, .states = 2, .draws = draws };
+    snprintf(name, sizeof name, "columns-of-R-%c", "xyz"[axis]);
+    const bool measured = measure_resistance(run, name, scene, &f, 1, lubrication, R);
     snprintf(name, sizeof name, "draws-%c", "xyz"[axis]);
-    if (measure_resistance(run, scene, &f, 1, lubrication, R) && check_ask(run, name, &q, out))
+    if (measured && check_ask(run, name, &q, out))
         draw = noise_draws(run, out, "noise_lubrication_noise.npy", draws, &f, sqrt(2.0 * kT / dt));
     for (size_t k = 0; k < 3 && draw; k++) {
         double sum = 0.0, squares = 0.0;

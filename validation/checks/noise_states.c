@@ -151,7 +151,7 @@ json_t *frozen_scene(struct check_run *run, const struct frozen *f)
     return scene;
 }
 
-bool measure_resistance(struct check_run *run, json_t *scene, const struct frozen *f, size_t forces, const char *const force[],
+bool measure_resistance(struct check_run *run, const char *name, json_t *scene, const struct frozen *f, size_t forces, const char *const force[],
                         double *R[])
 {
     const size_t size = 6 * f->count, states = size + 1;
@@ -170,7 +170,7 @@ bool measure_resistance(struct check_run *run, json_t *scene, const struct froze
     for (size_t k = 0; k < forces; k++)
         snprintf(wanted + strlen(wanted), sizeof wanted - strlen(wanted), "%s%s", k ? "," : "", force[k]);
     const struct question q = { .protocol = "forces", .scene = scene, .state = row, .states = states * f->count };
-    const bool answered = check_ask(run, "columns-of-R", &q, out);
+    const bool answered = check_ask(run, name, &q, out);
     free(row);
     if (!answered)
         return false;
