@@ -264,11 +264,13 @@ static void misbehaviour_is_a_verdict(void)
     const struct candidate c = { .command = written("not-executable", "x"), .seconds = 30, .bytes = 1 << 20 };
     struct check_run run = { .gate_case = &one, .candidate = &c, .attempt = 1 };
     char out[PATH_LENGTH], hex[17];
-    path_join(run.work, folder, "asked");
+    path_join(run.work, folder, "asked-once");
     const struct question q = { .protocol = "forces", .scene = scene, .state = two, .states = 2 };
     check_true(!candidate_hash(&c, hex), "a file that cannot be executed is no program");
     check_true(!check_ask(&run, "pair", &q, out) && run.results.count == 1, "it gives no answer");
     check_true(strstr(run.results.item[0].sentence, "exit code 126") != NULL, run.results.item[0].sentence);
+    check_true(!check_ask(&run, "pair", &q, out) && run.results.count == 2 && strstr(run.results.item[1].sentence, "two questions are called pair"),
+               "a second question by the same name, whose answer would be mixed with the first one's, is refused");
     results_free(&run.results);
     json_decref(scene);
     json_decref(needs);
