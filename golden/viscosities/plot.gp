@@ -28,14 +28,22 @@ set xlabel 'Pe = 6π η a^3 rate/kT'
 set logscale x
 set format x '10^{%T}'
 set xrange [0.1:3e4]
-set yrange [4:60]
+set yrange [4:90]
 series = "'phi 0.45|0|1' 'phi 0.45|0.5|2' 'phi 0.50|0|3' 'phi 0.50|0.5|4'"
 phi_of(s) = s[1:strstrt(s,'|')-1]
 mu_of(s) = s[strstrt(s,'|')+1:strlen(s)-2]
 colour(s) = int(s[strlen(s):*])
-plot for [s in series] brownian using (column('x')*row(mu_of(s), has(phi_of(s)) && !repelled(0))):'candidate':'candidate_error' with yerrorbars pt 7 ps 0.7 lc colour(s) title 'shear, '.phi_of(s).' μ '.mu_of(s), \
-     for [s in series] brownian using (1.12*column('x')*row(mu_of(s), has(phi_of(s)) && !repelled(0))):'reference':'reference_error' with yerrorbars pt 6 ps 1.3 lc colour(s) title 'LAMMPS', \
-     brownian using (column('x')*row('0.5', has('phi 0.50') && repelled(0))):'candidate':'candidate_error' with yerrorbars pt 5 ps 0.7 lc 5 title 'shear, phi 0.50 μ 0.5, repulsion 100 kT', \
-     brownian using (1.12*column('x')*row('0.5', has('phi 0.50') && repelled(0))):'reference':'reference_error' with yerrorbars pt 4 ps 1.3 lc 5 title 'LAMMPS', \
-     [7e3:1.4e4] fit(0.45, 0.642) lc 3 dt 3 notitle, [7e3:1.4e4] fit(0.50, 0.642) lc 3 notitle, [0.12:0.25] fit(0.45, 0.587) lc 3 dt 3 title 'Li, no friction, φ 0.45', [0.12:0.25] fit(0.50, 0.587) lc 3 title 'φ 0.50'
+of_series(s) = row(mu_of(s), has(phi_of(s)) && !repelled(0))
+of_repelled(x) = row('0.5', has('phi 0.50') && repelled(0))
+set key top left
+set style line 9 lc rgb 'brown'
+curve(phi, mu, more) = "< cat viscosities-brownian-*-table.csv viscosities-repulsion-table.csv | grep -E '^".phi.' mu '.mu.' Pe [0-9.e]+'.more.",.*,viscosity,' | sort -t, -g -k3,3"
+plot for [s in series] curve(phi_of(s), mu_of(s), '') using 3:6 with lines lc colour(s) notitle, \
+     curve('phi 0.50', '0.5', ' A/kT 100') using 3:6 with lines ls 9 notitle, \
+     for [s in series] brownian using (column('x')*of_series(s)):'candidate':'candidate_error' with yerrorbars pt 7 ps 0.7 lc colour(s) title 'φ '.phi_of(s)[5:*].', μ '.mu_of(s), \
+     brownian using (column('x')*of_repelled(0)):'candidate':'candidate_error' with yerrorbars ls 9 pt 5 ps 0.8 title 'φ 0.50, μ 0.5, repulsion A/kT 100', \
+     for [s in series] brownian using (1.12*column('x')*of_series(s)):'reference':'reference_error' with yerrorbars pt 6 ps 1.3 lc colour(s) notitle, \
+     brownian using (1.12*column('x')*of_repelled(0)):'reference':'reference_error' with yerrorbars ls 9 pt 4 ps 1.3 notitle, \
+     NaN with points pt 6 ps 1.3 lc 'black' title 'open: LAMMPS (moved to the right)', \
+     [7e3:1.4e4] fit(0.45, 0.642) lc 'black' dt 3 notitle, [7e3:1.4e4] fit(0.50, 0.642) lc 'black' notitle, [0.12:0.25] fit(0.45, 0.587) lc 'black' dt 3 title 'Li, μ 0, φ 0.45', [0.12:0.25] fit(0.50, 0.587) lc 'black' title 'Li, μ 0, φ 0.50'
 unset multiplot

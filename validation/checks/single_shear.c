@@ -12,6 +12,7 @@
  * tolerance is eps for the velocity and eps tau for the place, times the starting peculiar velocity.
  */
 #include "single.h"
+#include "two_bodies.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -140,7 +141,9 @@ void check_shear(struct check_run *run)
                 parameter_list(parameters, "at", list, &steps, 16);
                 for (size_t k = 0; k < steps; k++)
                     at[k] = (int)list[k];
-                scene_set(scene, "dynamics.verlet.dt", json_real(dt));
+                char step[96];
+                step_key(scene, step);
+                scene_set(scene, step, json_real(dt));
                 spread(run, &m, tau, start);
                 char name[64];
                 snprintf(name, sizeof name, "%s-box-%zu", plane.name, b + 1);

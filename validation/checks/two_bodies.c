@@ -237,5 +237,5 @@ void bodies_picture(struct check_run *run, const struct comparison *c, const str
 const struct check two_bodies_checks[] = {
     { "approach", check_approach },   { "pushed", check_pushed },   { "encounter", check_encounter },       { "boltzmann", check_boltzmann },
     { "trapped-pair", check_trapped_pair },
-    { "equipartition", check_equipartition }, { "metamorphic", check_metamorphic }, { "observers", check_observers }, { "resume", check_resume }, { "flat", check_flat }, { "grip-lost", check_grip_lost }, { "flat-dynamics", check_flat_dynamics }, { NULL, NULL },
+    { "equipartition", check_equipartition }, { "metamorphic", check_metamorphic }, { "observers", check_observers }, { "resume", check_resume }, { "flat", check_flat }, { "grip-lost", check_grip_lost }, { "passing", check_passing }, { "flat-dynamics", check_flat_dynamics }, { NULL, NULL },
 };

@@ -60,6 +60,7 @@ void check_observers(struct check_run *run);
 void check_resume(struct check_run *run);
 void check_flat(struct check_run *run);
 void check_grip_lost(struct check_run *run);
+void check_passing(struct check_run *run);
 void check_flat_dynamics(struct check_run *run);
 
 #endif
