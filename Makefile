@@ -45,7 +45,8 @@ test: ## build and run the unit tests, and run the CI files of tools/ci
 $B/commit: FORCE
 	@mkdir -p $(@D)
 	@echo '$(COMMIT)' | cmp -s - $@ || echo '$(COMMIT)' >$@
-$B/obj/solver/shear.o $B/obj/solver/describe.o $B/obj/validation/gate.o $B/obj/tools/engine/main.o: $B/commit
+$B/obj/solver/shear.o $B/obj/solver/describe.o $B/obj/validation/gate.o $B/obj/validation/checks/kept.o $B/obj/validation/checks/dense_viscosities.o \
+  $B/obj/validation/checks/published_shear.o $B/obj/tools/engine/main.o: $B/commit
 FORCE:
 
 $B/obj/solver/%.o: solver/%.c

@@ -10,8 +10,7 @@
  * "Agrees" is an equivalence test: the interval mean(d) +- 4 standard errors (99 % for 5 realisations, Student's t with 4 degrees
  * of freedom) must lie within the margin. Margins: `margin` (else the case's tolerance) of the viscosity for it and its parts,
  * `normal_stress_margin` of it for pressure, N1 and N2; the same share as the viscosity's of itself for the contact number; `kinetic_margin` and
- * `temperature_margin` of themselves for kinetic stress and temperatures. The shear part of the kinetic stress is what is left of a pressure n T that
- * nearly cancels, and scatters as that does: a hundredth of n T is allowed where that is more.
+ * `temperature_margin` of themselves for kinetic stress and temperatures.
  *
  * With `gate run --keep DIR` every finished realisation is a line of DIR/<case>.csv and not computed again, and DIR/<case>-table.csv has
  * the means; a point with "dear" is listed with that text and not run.
@@ -40,7 +39,6 @@ struct point {
     const json_t *json;
     const char *name;
     double x, phi, core_seconds[2];
-    double pressure_of_temperature;                     /* n T for a temperature of 1, in viscosity x rate */
     int count;                                          /* realisations */
     double value[2][QUANTITIES][MOST_REALISATIONS];    /* candidate, reference */
 };
@@ -74,13 +72,6 @@ static void see(void *to, const struct dense_start *s, const struct dense_snapsh
     seen->spin += turning / 3 / (double)s->count;
 }
 
-/* In which temperatures are told. */
-static double temperature_unit(const struct dense_start *s)
-{
-    const double kT = scene_number(s->scene, "fluid.kT", 0);
-    return kT > 0 ? kT : s->viscosity * fabs(s->rate) * gsl_pow_3(dense_radius(s, 0));
-}
-
 static bool read_run(struct check_run *run, const char *out, const struct dense_start *s, const struct flow *flow, double value[QUANTITIES])
 {
     struct flow_average average, kinetic;
@@ -98,7 +89,7 @@ static bool read_run(struct check_run *run, const char *out, const struct dense_
         return false;
     memcpy(value, average.mean, sizeof average.mean);
     value[KINETIC] = kinetic.mean[KINETIC];
-    const double unit = temperature_unit(s);
+    const double kT = scene_number(s->scene, "fluid.kT", 0), unit = kT > 0 ? kT : s->viscosity * fabs(s->rate) * gsl_pow_3(dense_radius(s, 0));
     value[CONTACTS] = seen.contacts / seen.frames;
     value[TEMPERATURE] = seen.temperature / seen.frames / unit;
     value[SPIN] = seen.spin / seen.frames / unit;
@@ -117,7 +108,6 @@ static bool run_point(struct check_run *run, struct point *p, int k, struct kept
     if (!point_start(run, p->json, k, &s, &flow))
         return false;
     p->phi = s.phi;
-    p->pressure_of_temperature = (double)s.count / gsl_pow_3(s.edge) * temperature_unit(&s) / (s.viscosity * fabs(s.rate));
     kept_hash(s.scene, scene);
     bool good = true;
     if (!kept_find(kept, p->name, k, scene, core, value[0], value[1])) {
@@ -153,13 +143,11 @@ static double difference_of(const struct point *p, int q, double *standard_error
 static double margin_of(const struct check_run *run, const struct point *p, int q, double reference, double viscosity)
 {
     const double share = point_number(run, p->json, "margin", run->gate_case->tolerance);
-    double unused;
     switch (q) {
     case N1: case N2: case PRESSURE:
         return point_number(run, p->json, "normal_stress_margin", 0.1) * viscosity;
     case KINETIC:
-        return fmax(point_number(run, p->json, "kinetic_margin", 0.2) * fabs(reference),
-                    0.01 * p->pressure_of_temperature * mean_of(p->value[1][TEMPERATURE], p->count, &unused));
+        return point_number(run, p->json, "kinetic_margin", 0.2) * fabs(reference);
     case TEMPERATURE: case SPIN:
         return point_number(run, p->json, "temperature_margin", 0.1) * fabs(reference);
     case CONTACTS:
