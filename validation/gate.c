@@ -1,87 +1,22 @@
 /*
  * gate: judges any program that computes suspension physics, through files (docs/adapter.md). It never links the solver.
  *
- * This file is the command line: which cases, in which order, against which candidate, and what is written where.
+ * This file is the commands: which cases, in which order, against which candidate, and what is written where.
  */
 #include "calibrate.h"
 #include "coverage.h"
 #include "export.h"
 #include "github.h"
 #include "known.h"
+#include "options.h"
 #include "versions.h"
 #include "terminal.h"
 
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
-
-enum { EXIT_USAGE = 2 };
-
-static const char help[] =
-    "gate: judges a program that computes suspension physics, through files\n"
-    "\n"
-    "  gate run --candidate COMMAND [options]   ask the cases, print verdicts, write a report\n"
-    "  gate list [options]                      the cases that `run` would ask\n"
-    "  gate export DIR [options]                write the questions to a folder, to be answered elsewhere (DIR/README.txt)\n"
-    "  gate judge DIR [options]                 verdicts from the answers in it\n"
-    "  gate explain [FLAG]                      a class of mistakes: what it is, what it does, where it was seen, which cases\n"
-    "                                           would show it; without FLAG the list of classes\n"
-    "  gate calibrate --candidate COMMAND --seeds N --table FILE [options]\n"
-    "                                           the cases with p-values under N seeds, for a candidate that is right:\n"
-    "                                           false verdicts and the spread of p; goes on where FILE ends\n"
-    "  gate freeze                              write suite-" GATE_SUITE ".json: what this suite asks from now on, and how strictly\n"
-    "\n"
-    "  --candidate COMMAND   called as COMMAND CASE_DIR OUT_DIR (docs/adapter.md)\n"
-    "  --capabilities FILE   what the candidate is (default: <program>.capabilities.json beside it, if there is one)\n"
-    "  --level LEVEL         ask as if the candidate were of this level: A forces, B a few steps, C runs only\n"
-    "  --layer LAYER         only this layer, by number or name: 1 pair, 2 noise, 3 single, 4 two-bodies, 5 dilute,\n"
-    "                        6 dense, 7 published; several separated by commas\n"
-    "  --case NAME           only these cases, separated by commas\n"
-    "  --needs PHYSICS       only cases that need this: contact, drag, lubrication, ...\n"
-    "  --tier TIER           fast (default), standard, full; each includes the ones before it\n"
-    "  --jobs N              worker processes (default 1)\n"
-    "  --stop-after N        end the run once N cases have failed\n"
-    "  --patience FACTOR     time limits of the cases times this (default 1), for a slow candidate or machine\n"
-    "  --suite VERSION       the suite as it was frozen, for example " GATE_SUITE ": newer cases only warn, and a case that has\n"
-    "                        changed since is an error (default: the cases as they are)\n"
-    "  --known FILE          failures that are accepted, with reason and expiry (docs/known.schema.json)\n"
-    "  --seed-offset K       other seeds for everything random (default 0: those written in the cases)\n"
-    "  --seeds N             calibrate: seed offsets 1 to N\n"
-    "  --table FILE          calibrate: CSV with a row per seed\n"
-    "  --keep DIR            finished realisations of long tables are kept there as CSV and not computed again (make golden)\n"
-    "  --report DIR          index.html and junit.xml (default build/report)\n"
-    "  --work DIR            what candidates are given and answer (default build/cases)\n"
-    "  --suite-dir DIR       the folder that holds cases/ and flags.json (default: validation/, found from the program)\n"
-    "\n"
-    "Exit codes: 0 pass, 1 fail, 2 wrong usage, 3 only inconclusive, 77 nothing supported.\n";
-
-struct options {
-    const char *candidate, *layers, *cases, *needs, *report, *work, *table, *suite, *known, *keep, *capabilities, *level;
-    const char *folder;         /* of export and judge */
-    bool exporting;
-    char suite_dir[PATH_LENGTH];
-    enum tier tier;
-    int jobs, stop_after;
-    double patience;
-    unsigned seed_offset, seeds;
-    bool calibrating;
-};
-
-static int usage(const char *format, ...) __attribute__((format(printf, 1, 2)));
-
-static int usage(const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    fprintf(stderr, "gate: ");
-    vfprintf(stderr, format, arguments);
-    fprintf(stderr, "\n");
-    va_end(arguments);
-    return EXIT_USAGE;
-}
 
 /* validation/ beside the folder of the program (build/gate), or below the current folder. */
 static void find_suite(char folder[PATH_LENGTH])
@@ -101,133 +36,6 @@ static void find_suite(char folder[PATH_LENGTH])
     }
 }
 
-static bool whole_number(const char *text, long least, long most, long *value)
-{
-    char *end;
-    *value = strtol(text, &end, 10);
-    return *text && *end == '\0' && *value >= least && *value <= most;
-}
-
-/* 0, or an exit code after a message. */
-static int parse_option(struct options *o, const char *name, const char *value)
-{
-    long n;
-    if (!value)
-        return usage("%s needs a value", name);
-    if (strcmp(name, "--candidate") == 0)
-        o->candidate = value;
-    else if (strcmp(name, "--capabilities") == 0)
-        o->capabilities = value;
-    else if (strcmp(name, "--level") == 0)
-        o->level = value;
-    else if (strcmp(name, "--layer") == 0)
-        o->layers = value;
-    else if (strcmp(name, "--case") == 0)
-        o->cases = value;
-    else if (strcmp(name, "--needs") == 0)
-        o->needs = value;
-    else if (strcmp(name, "--report") == 0)
-        o->report = value;
-    else if (strcmp(name, "--keep") == 0)
-        o->keep = value;
-    else if (strcmp(name, "--table") == 0)
-        o->table = value;
-    else if (strcmp(name, "--work") == 0)
-        o->work = value;
-    else if (strcmp(name, "--suite") == 0)
-        o->suite = value;
-    else if (strcmp(name, "--known") == 0)
-        o->known = value;
-    else if (strcmp(name, "--suite-dir") == 0)
-        snprintf(o->suite_dir, sizeof o->suite_dir, "%s", value);
-    else if (strcmp(name, "--tier") == 0)
-        return tier_parse(value, &o->tier) ? 0 : usage("there is no tier '%s'; there are fast, standard, full", value);
-    else if (strcmp(name, "--jobs") == 0) {
-        if (!whole_number(value, 1, 256, &n))
-            return usage("--jobs '%s' is no whole number from 1 to 256", value);
-        o->jobs = (int)n;
-    } else if (strcmp(name, "--stop-after") == 0) {
-        if (!whole_number(value, 1, 1000, &n))
-            return usage("--stop-after '%s' is no whole number from 1 to 1000", value);
-        o->stop_after = (int)n;
-    } else if (strcmp(name, "--patience") == 0) {
-        char *end;
-        o->patience = strtod(value, &end);
-        if (end == value || *end || !(o->patience > 0 && o->patience <= 1e6))
-            return usage("--patience '%s' is no number above 0", value);
-    } else if (strcmp(name, "--seed-offset") == 0) {
-        if (!whole_number(value, 0, 2147483647, &n))
-            return usage("--seed-offset '%s' is no whole number from 0 to 2147483647", value);
-        o->seed_offset = (unsigned)n;
-    } else if (strcmp(name, "--seeds") == 0) {
-        if (!whole_number(value, 1, 1000000, &n))
-            return usage("--seeds '%s' is no whole number from 1 to 1000000", value);
-        o->seeds = (unsigned)n;
-    } else
-        return usage("unknown option '%s'; see gate --help", name);
-    return 0;
-}
-
-/* Whether `word` is one of the comma-separated `list`. */
-static bool in_list(const char *list, const char *word)
-{
-    for (const size_t length = strlen(word); *list;) {
-        const size_t n = strcspn(list, ",");
-        if (n == length && strncmp(list, word, n) == 0)
-            return true;
-        list += n + (list[n] == ',');
-    }
-    return false;
-}
-
-static bool wanted(const struct options *o, const struct gate_case *c)
-{
-    char number[2] = { (char)('0' + c->layer), '\0' };
-    return c->tier <= o->tier && (!o->calibrating || c->p_values > 0) && (!o->cases || in_list(o->cases, c->name)) && (!o->needs || case_lists(c->needs, o->needs))
-           && (!o->layers || in_list(o->layers, layer_name(c->layer)) || in_list(o->layers, number));
-}
-
-/* A word that no case names, and those that some do. */
-static int check_needs(const char *needs, const struct suite_of_cases *suite)
-{
-    json_t *words = json_object();
-    char list[1024] = "";
-    for (size_t k = 0; k < suite->count; k++) {
-        size_t n;
-        json_t *word;
-        json_array_foreach(suite->item[k].needs, n, word)
-            json_object_set_new(words, json_string_value(word), json_true());
-    }
-    const bool known = json_object_get(words, needs) != NULL;
-    const char *word;
-    json_t *value;
-    json_object_foreach(words, word, value)
-        snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", *list ? ", " : "", word);
-    json_decref(words);
-    return known ? 0 : usage("--needs '%s': no case names this as what it is about; some name %s", needs, list);
-}
-
-/* Every name in --layer and --case must mean something: a typing error must not make an empty run look like a pass. */
-static int check_names(const struct options *o, const struct suite_of_cases *suite)
-{
-    char word[128];
-    enum layer layer;
-    for (const char *at = o->layers ? o->layers : ""; *at; at += strcspn(at, ","), at += *at == ',') {
-        snprintf(word, sizeof word, "%.*s", (int)strcspn(at, ","), at);
-        if (!layer_parse(word, &layer))
-            return usage("there is no layer '%s'; see gate --help", word);
-    }
-    for (const char *at = o->cases ? o->cases : ""; *at; at += strcspn(at, ","), at += *at == ',') {
-        bool known = false;
-        snprintf(word, sizeof word, "%.*s", (int)strcspn(at, ","), at);
-        for (size_t k = 0; k < suite->count; k++)
-            known = known || strcmp(suite->item[k].name, word) == 0;
-        if (!known)
-            return usage("there is no case '%s'; see gate list --tier full", word);
-    }
-    return o->needs ? check_needs(o->needs, suite) : 0;
-}
-
 /* Layers without a chosen case, and how many cases were left out of the others. */
 static void say_not_tested(const struct options *o, const struct suite_of_cases *suite, size_t chosen, char *text, size_t room)
 {
@@ -235,7 +43,7 @@ static void say_not_tested(const struct options *o, const struct suite_of_cases 
     for (int layer = LAYER_PAIR; layer <= LAYER_PUBLISHED; layer++) {
         bool tested = false;
         for (size_t k = 0; k < suite->count; k++)
-            tested = tested || ((int)suite->item[k].layer == layer && wanted(o, &suite->item[k]));
+            tested = tested || ((int)suite->item[k].layer == layer && options_want(o, &suite->item[k]));
         const size_t used = strlen(text);
         if (!tested)
             snprintf(text + used, room - used, "%s%s", used ? ", " : "layers ", layer_name((enum layer)layer));
@@ -422,11 +230,11 @@ static int with_suite(const char *verb, const struct options *o)
         cases_free(&suite);
         return usage("%s", why);
     }
-    int code = check_names(o, &suite);
+    int code = options_check(o, &suite);
     const struct gate_case **chosen = calloc(suite.count, sizeof *chosen);
     size_t count = 0;
     for (size_t k = 0; k < suite.count && code == 0; k++) {
-        if (!wanted(o, &suite.item[k]))
+        if (!options_want(o, &suite.item[k]))
             continue;
         chosen[count++] = &suite.item[k];
         if (!check_find(suite.item[k].check))
@@ -445,7 +253,7 @@ int main(int argc, char **argv)
 {
     const char *verb = argc > 1 ? argv[1] : "";
     if (strcmp(verb, "--help") == 0 || strcmp(verb, "-h") == 0)
-        return fputs(help, stdout) < 0;
+        return fputs(options_help, stdout) < 0;
     if (strcmp(verb, "--version") == 0)
         return printf("gate %s, suite %s\n", GATE_VERSION, GATE_SUITE) < 0;
     if (strcmp(verb, "run") != 0 && strcmp(verb, "list") != 0 && strcmp(verb, "calibrate") != 0 && strcmp(verb, "explain") != 0
@@ -472,13 +280,13 @@ int main(int argc, char **argv)
     json_t *value;
     int code = 0;
     json_object_foreach(kept, key, value)
-        code = code ? code : parse_option(&o, key, json_string_value(value));
+        code = code ? code : options_parse(&o, key, json_string_value(value));
     for (int k = offline ? 3 : 2; k < argc && code == 0; k += 2) {
         if (strcmp(argv[k], "--help") == 0)
-            return fputs(help, stdout) < 0;
+            return fputs(options_help, stdout) < 0;
         if (strcmp(verb, "judge") == 0 && export_keeps(argv[k]))
             return usage("%s was settled by `gate export`; export anew to choose otherwise", argv[k]);
-        code = parse_option(&o, argv[k], k + 1 < argc ? argv[k + 1] : NULL);
+        code = options_parse(&o, argv[k], k + 1 < argc ? argv[k + 1] : NULL);
     }
     if (code == 0 && o.exporting && !export_begin(o.folder, argc - 3, argv + 3, why))
         return usage("%s", why);
