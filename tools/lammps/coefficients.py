@@ -175,15 +175,15 @@ def said_by(deck):
     return [[float(v) for v in line.split()[1:]] for line in said.splitlines() if line.startswith("RESULT")]
 
 
-ONE = """units lj
-atom_style sphere
-atom_modify map array
+CELL = """atom_modify map array
 newton {newton}
 comm_modify vel yes
 box tilt large
 region r prism 0 {edge} 0 {edge} 0 {edge} 0 0 0
 create_box 1 r
-create_atoms 1 single 5 5 5
+"""
+
+ONE = "units lj\natom_style sphere\n" + CELL + """create_atoms 1 single 5 5 5
 set type 1 diameter {d}
 set type 1 density 0.7
 pair_style zero 2
@@ -283,15 +283,8 @@ def draws(style, a, b, xi, kT, dt, count, newton="off"):
         rows = [[float(v) for v in line.split()] for line in open(os.path.join(folder, "draws")) if len(line.split()) == 7 and line[0].isdigit()]
     return [one[1:4] + two[1:4] + one[4:7] + two[4:7] for one, two in zip(rows[2::2], rows[3::2])]
 
-MOVING = """units lj
-atom_style hybrid sphere dipole
-atom_modify map array
-newton {newton}
-comm_modify vel yes
-box tilt large
-region r prism 0 {edge} 0 {edge} 0 {edge} 0 0 0
-create_box 1 r
-{spheres}
+
+MOVING = "units lj\natom_style hybrid sphere dipole\n" + CELL + """{spheres}
 set type 1 diameter {d1!r}
 set atom 2 diameter {d2!r}
 set type 1 density 1.0
