@@ -52,7 +52,7 @@ struct engine {
 /* An error on one rank that the others cannot know of: says it and ends all of them. */
 void engine_abort(const struct engine *g, const struct error *e) __attribute__((noreturn));
 
-/* host.c: LAMMPS itself. `cell` is that of the step after the present one. */
+/* host_start.c and host.c: LAMMPS itself. `cell` is that of the step after the present one. */
 void host_start(struct engine *g);
 void host_place(struct engine *g, const struct traveller *t, int count);
 void host_place_contacts(struct engine *g, const struct contact_record *c, int count);

@@ -15,7 +15,7 @@
  * A new list is recognised by a mark that LAMMPS copies onto ghosts only when it makes them anew.
  */
 #define LAMMPS_LIB_MPI
-#include "engine.h"
+#include "host.h"
 
 #include "core/step_limit.h"
 
@@ -25,8 +25,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void command(const struct engine *g, const char *format, ...) __attribute__((format(printf, 2, 3)));
-static void command(const struct engine *g, const char *format, ...)
+void host_command(const struct engine *g, const char *format, ...)
 {
     char text[400];
     va_list list;
@@ -36,7 +35,7 @@ static void command(const struct engine *g, const char *format, ...)
     lammps_command(g->lammps, text);
 }
 
-static void *grown(const struct engine *g, void *array, size_t size)
+void *host_grown(const struct engine *g, void *array, size_t size)
 {
     void *more = realloc(array, size + 1);
     struct error e = { 0 };
@@ -157,7 +156,7 @@ static void take_candidate(struct engine *g, int i, int j, const int shift[3], d
         return;
     if (n->count == n->room) {
         n->room = n->room ? n->room + n->room / 2 : 1024;
-        n->candidate = grown(g, n->candidate, (size_t)n->room * sizeof *n->candidate);
+        n->candidate = host_grown(g, n->candidate, (size_t)n->room * sizeof *n->candidate);
     }
     n->candidate[n->count++] = (struct candidate){ i, j, image_index(shift), 0, radius_of(p, i) + radius_of(p, j), range * range, weight };
 }
@@ -193,11 +192,11 @@ static void make_list(struct engine *g)
     const struct kept *kept = kept_of(g);
     if (all > g->room) {
         g->room = all + all / 4;
-        p->species = g->species = grown(g, g->species, (size_t)g->room * sizeof *g->species);
-        g->slots_used = grown(g, g->slots_used, (size_t)g->room * sizeof *g->slots_used);
+        p->species = g->species = host_grown(g, g->species, (size_t)g->room * sizeof *g->species);
+        g->slots_used = host_grown(g, g->slots_used, (size_t)g->room * sizeof *g->slots_used);
         if (p->anchored) {
-            p->anchor = grown(g, p->anchor, (size_t)g->room * sizeof *p->anchor);
-            p->image = grown(g, p->image, (size_t)g->room * sizeof *p->image);
+            p->anchor = host_grown(g, p->anchor, (size_t)g->room * sizeof *p->anchor);
+            p->image = host_grown(g, p->image, (size_t)g->room * sizeof *p->image);
         }
     }
     for (int i = 0; i < all; i++)
@@ -216,11 +215,11 @@ static void make_list(struct engine *g)
     }
     if (n->count >= n->near.room) {
         n->near.room = n->count + n->count / 4 + 64;
-        n->near.pair = grown(g, n->near.pair, (size_t)n->near.room * sizeof *n->near.pair);
+        n->near.pair = host_grown(g, n->near.pair, (size_t)n->near.room * sizeof *n->near.pair);
         if (n->near.keeps_resistance)
-            n->near.resistance = grown(g, n->near.resistance, (size_t)n->near.room * sizeof *n->near.resistance);
+            n->near.resistance = host_grown(g, n->near.resistance, (size_t)n->near.room * sizeof *n->near.resistance);
         if (n->keeps_history)
-            n->history = grown(g, n->history, (size_t)n->near.room * sizeof *n->history);
+            n->history = host_grown(g, n->history, (size_t)n->near.room * sizeof *n->history);
     }
     const double *first = g->slots && g->own ? slots_of(g, 0) : NULL;
     for (int k = 0; n->keeps_history && k < n->count; k++) {
@@ -276,7 +275,7 @@ static void check_sound(struct engine *g, bool relisted)
         engine_abort(g, &e);
 }
 
-static void evaluate(void *engine, int64_t step, int own, int *id, double **x, double **host_force)
+void host_evaluate(void *engine, int64_t step, int own, int *id, double **x, double **host_force)
 {
     struct engine *g = engine;
     struct suspension *s = &g->here;
@@ -318,119 +317,13 @@ static void evaluate(void *engine, int64_t step, int own, int *id, double **x, d
         kept[i].turn = plus(kept[i].turn, scaled(p->spin[i], s->dt));
 }
 
-/* ---- setting up ---- */
-
-/* A sphere cannot touch more spheres than caps of their size fit on it (with nothing between the caps). */
-static int most_contacts(const struct particles *p)
-{
-    double small = INFINITY, large = 0.0;
-    for (int k = 0; k < p->species_count; k++) {
-        small = fmin(small, p->kind[k].radius);
-        large = fmax(large, p->kind[k].radius);
-    }
-    const double sine = small / (small + large);
-    return (int)ceil(2.0 / (1.0 - sqrt(1.0 - sine * sine)));
-}
-
-/* This rank's suspension: the scene's, but for particles and lists; room that is there already is used again. */
-static void set_up_here(struct engine *g)
-{
-    struct suspension *s = &g->here;
-    struct neighbours *n = &s->neighbours;
-    const struct neighbours *scene = &g->scene->neighbours, before = *n;
-    vec3 *const anchor = s->particles.anchor;
-    int (*const image)[3] = s->particles.image;
-    *s = *g->scene;
-    s->particles = (struct particles){ .species_count = g->scene->particles.species_count, .anchored = g->scene->particles.anchored,
-                                       .anchor = anchor, .image = image };
-    memcpy(s->particles.kind, g->scene->particles.kind, sizeof s->particles.kind);
-    *n = before;
-    memcpy(n->range, scene->range, sizeof n->range);
-    for (int k = 0; k < MAX_SPECIES * MAX_SPECIES; k++)
-        n->largest_range = fmax(n->largest_range, n->range[k / MAX_SPECIES][k % MAX_SPECIES]);
-    n->keeps_history = scene->keeps_history;
-    n->near.keeps_resistance = scene->near.keeps_resistance;
-    n->foreign = true;
-    n->made = 1;
-    n->offset_count = 27;
-    n->offset = grown(g, n->offset, 27 * sizeof *n->offset);
-    for (int k = 0; k < 27; k++)
-        memcpy(n->offset[k].shift, (const int[3]){ k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1 }, sizeof n->offset[k].shift);
-    g->slots = n->keeps_history ? most_contacts(&s->particles) : 0;
-}
-
-static void set_up_cell(struct engine *g)
-{
-    const struct suspension *s = &g->here;
-    struct box ahead = s->box;
-    box_set_time(&ahead, s->start_time + (double)(s->step + 1) * s->dt);
-    const mat3 *H = &ahead.cell;
-    command(g, "box tilt large");
-    command(g, "region cell prism 0 %.17g 0 %.17g 0 %.17g %.17g %.17g %.17g units box", H->m[0][0], H->m[1][1], H->m[2][2], H->m[0][1],
-            H->m[0][2], H->m[1][2]);
-    command(g, "create_box %d cell", s->particles.species_count);
-}
-
-static void set_up_list(struct engine *g)
-{
-    const struct neighbours *n = &g->here.neighbours;
-    const struct particles *p = &g->here.particles;
-    double smallest = INFINITY;
-    for (int a = 0; a < p->species_count; a++)
-        smallest = fmin(smallest, p->kind[a].radius);
-    /* The first list is made in the cell of the next step: its images are off by what a face moves in a step. */
-    const mat3 *H = &g->here.box.cell;
-    const double lead = g->here.box.rate * g->here.dt * (H->m[1][1] + H->m[2][2]);
-    command(g, "pair_style zero %.17g", fmax(n->largest_range, 0.1 * smallest) + lead);
-    command(g, "pair_coeff * *");
-    for (int a = 0; a < p->species_count; a++)
-        for (int b = a; b < p->species_count; b++)
-            command(g, "pair_coeff %d %d %.17g", a + 1, b + 1, fmax(n->range[a][b], 0.1 * smallest) + lead);
-    command(g, "neighbor %.17g bin", g->skin * smallest);
-    command(g, "neigh_modify delay 0 every 1 check yes");
-}
-
-void host_start(struct engine *g)
-{
-    char *arguments[] = { "lammps", "-screen", "none", "-log", *g->log ? g->log : "none", "-echo", "none", "-nocite" };
-    const struct suspension *s = &g->here;
-    if (g->lammps)
-        command(g, "clear");
-    else
-        g->lammps = lammps_open(sizeof arguments / sizeof *arguments, arguments, g->world, NULL);
-    g->index_of_tag = grown(g, g->index_of_tag, ((size_t)g->total + 1) * sizeof *g->index_of_tag);
-    memset(g->index_of_tag, -1, ((size_t)g->total + 1) * sizeof *g->index_of_tag);
-    set_up_here(g);
-    command(g, "units lj");
-    command(g, "atom_style sphere");
-    command(g, "boundary p p p");
-    command(g, "newton off");
-    command(g, "comm_modify vel yes");
-    set_up_cell(g);
-    set_up_list(g);
-    command(g, "timestep %.17g", s->dt);
-    command(g, "reset_timestep %lld", (long long)s->step);
-    command(g, "fix kept all property/atom d2_kept %d", KEPT);
-    if (g->slots)
-        command(g, "fix contacts all property/atom d2_contacts %d", 4 * g->slots);
-    command(g, "fix mark all property/atom i_mark ghost yes");
-    command(g, "fix forces all external pf/callback 1 1");
-    lammps_set_fix_external_callback(g->lammps, "forces", evaluate, g);
-    command(g, "fix motion all nve/sphere");
-    const mat3 *G = &s->box.gradient, *H = &s->box.cell;
-    if (s->box.flowing)                                     /* C follows G too: where it leans along y its xz tilt grows by the xy flow */
-        command(g, "fix flow all deform 1 xy erate %.17g xz erate %.17g yz erate %.17g remap v flip no", G->m[0][1],
-                G->m[0][2] + G->m[0][1] * H->m[1][2] / H->m[2][2], G->m[1][2]);
-    command(g, "thermo_style custom step");
-    g->first_step = s->step;
-    g->restoring = true;
-}
+/* ---- dealing out ---- */
 
 /* Of particles that all ranks are told of LAMMPS keeps those that lie here, behind those it has and in the same order. */
 void host_place(struct engine *g, const struct traveller *t, int count)
 {
-    int *id = grown(g, NULL, (size_t)count * sizeof *id), *type = grown(g, NULL, (size_t)count * sizeof *type);
-    double *x = grown(g, NULL, (size_t)count * sizeof(vec3)), *v = grown(g, NULL, (size_t)count * sizeof(vec3));
+    int *id = host_grown(g, NULL, (size_t)count * sizeof *id), *type = host_grown(g, NULL, (size_t)count * sizeof *type);
+    double *x = host_grown(g, NULL, (size_t)count * sizeof(vec3)), *v = host_grown(g, NULL, (size_t)count * sizeof(vec3));
     for (int k = 0; k < count; k++) {
         id[k] = t[k].tag;
         type[k] = t[k].species + 1;
@@ -471,7 +364,7 @@ void host_place(struct engine *g, const struct traveller *t, int count)
 void host_place_contacts(struct engine *g, const struct contact_record *c, int count)
 {
     double *first = g->slots && g->own ? slots_of(g, 0) : NULL;
-    g->slots_used = grown(g, g->slots_used, ((size_t)g->own + 1) * sizeof *g->slots_used);
+    g->slots_used = host_grown(g, g->slots_used, ((size_t)g->own + 1) * sizeof *g->slots_used);
     for (int k = 0; k < count && first; k++)
         for (int side = 0; side < 2; side++) {
             const int tag = side ? c[k].second : c[k].first, other = side ? c[k].first : c[k].second, i = g->index_of_tag[tag];
@@ -486,7 +379,7 @@ void host_place_contacts(struct engine *g, const struct contact_record *c, int c
                 slot[4 * g->slots_used[i]] = 0.0;
         }
     g->room = g->own;                                       /* as far as all arrays are long enough */
-    g->species = grown(g, g->species, ((size_t)g->own + 1) * sizeof *g->species);
+    g->species = host_grown(g, g->species, ((size_t)g->own + 1) * sizeof *g->species);
 }
 
 void host_advance(struct engine *g, int64_t to, bool measuring)
@@ -495,7 +388,7 @@ void host_advance(struct engine *g, int64_t to, bool measuring)
     g->last_step = to;
     g->measures = measuring;
     stress_clear(&g->here.stress);
-    command(g, "run %lld pre %s post no start %lld stop %lld", (long long)(to - g->here.step), fresh ? "yes" : "no", (long long)g->first_step,
+    host_command(g, "run %lld pre %s post no start %lld stop %lld", (long long)(to - g->here.step), fresh ? "yes" : "no", (long long)g->first_step,
             (long long)g->first_step + (1LL << 40));    /* farther than any run; a power of two does not round the tilt */
 }
 
