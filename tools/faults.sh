@@ -4,8 +4,8 @@
 #
 #     make faults [ONLY=word] [JOBS=2] [LEVEL=A]
 #
-# Seconds are those of one core, of the gate and the candidate. What was judged is kept in build/faults/ and not judged again until the solver, the suite or the entry changes. The table of all entries
-# is docs/measured/faults.csv; levels that were not run keep the columns that they had.
+# Seconds are those of one core, of the gate and the candidate. The table of all entries is docs/measured/faults.csv. Its `key`s are hashes of the
+# solver, the suite and the entry: what was judged with the same key is not judged again, also in another clone; other cells stay as they were.
 set -eu
 cd "$(dirname "$0")/.."
 list=validation/faults/faults.json
@@ -77,25 +77,40 @@ judge() {
     printf '%s\t%s s\t%s\t%s\t%s\n' "$right" "$seconds" "$(printf %s "$entry" | jq -r .name)" "${where:-passed everything}" "$said" | cut -c1-250
 }
 
+# What the table knows from before, under its key.
+restore() {
+    [ ! -f $table ] || python3 - $table <<'EOF'
+import csv, json, os, sys
+for row in csv.DictReader(open(sys.argv[1])):
+    for level, prefix in ("A", ""), ("B", "B "), ("C", "C "):
+        path = f"build/faults/{level}/{row.get('key ' + level)}.json"
+        if row.get("key " + level) and not os.path.exists(path):
+            os.makedirs(os.path.dirname(path), exist_ok=True)
+            json.dump({"case": "" if row[level] in ("passes, as it must", "NOT CAUGHT") else row[level], "layer": row["layer"] if level == "A" else "",
+                       "seconds": float(row[prefix + "seconds"]), "sentence": row["sentence at level A"] if level == "A" else ""}, open(path, "w"))
+EOF
+}
+
 # The table: what each level has said of each entry; of levels that have no answer the old cells.
 assemble() {
     for k in $(seq 0 $((count - 1))); do
         entry=$(jq -c ".faults[$k]" $list)
         key=$(printf '%s %s' "$SOURCES" "$entry" | hash_of)
         for l in A B C; do
-            [ -s "build/faults/$l/$key.json" ] && cat "build/faults/$l/$key.json" || echo null
+            [ -s "build/faults/$l/$key.json" ] && jq --arg key "$key" '. + { key: $key }' "build/faults/$l/$key.json" || echo null
         done | jq -cs --argjson entry "$entry" '$entry + { A: .[0], B: .[1], C: .[2] }'
     done >build/faults/all.jsonl
     [ -f $table ] && python3 -c 'import csv, json, sys; json.dump({r["fault"]: r for r in csv.DictReader(open(sys.argv[1]))}, sys.stdout)' $table \
         >build/faults/before.json || echo '{}' >build/faults/before.json
     jq -rn --slurpfile old build/faults/before.json '
         def caught(x; equivalent): if x.case == "" then (if equivalent then "passes, as it must" else "NOT CAUGHT" end) else x.case end;
-        ["fault", "class", "origin", "file", "A", "layer", "seconds", "B", "B seconds", "C", "C seconds", "sentence at level A"],
+        ["fault", "class", "origin", "file", "A", "layer", "seconds", "B", "B seconds", "C", "C seconds", "sentence at level A", "key A", "key B", "key C"],
         (inputs | . as $f | ($old[0][.name] // {}) as $was | (.class == "equivalent") as $e | [.name, .class, .origin, .file]
             + (if .A then [caught(.A; $e), .A.layer, .A.seconds] else [$was.A, $was.layer, $was.seconds] end)
             + (if .B then [caught(.B; $e), .B.seconds] else [$was.B, $was["B seconds"]] end)
             + (if .C then [caught(.C; $e), .C.seconds] else [$was.C, $was["C seconds"]] end)
-            + [if .A then .A.sentence else $was["sentence at level A"] end]) | @csv' build/faults/all.jsonl >$table.new
+            + [if .A then .A.sentence else $was["sentence at level A"] end]
+            + [.A.key // $was["key A"], .B.key // $was["key B"], .C.key // $was["key C"]]) | @csv' build/faults/all.jsonl >$table.new
     mv $table.new $table
 }
 
@@ -111,6 +126,7 @@ summary() {
 export SOURCES="${SOURCES:-$(sources)}"
 [ "${1:-}" = judge ] && { judge "$2"; exit; }
 count=$(jq '.faults | length' $list)
+restore
 reference
 jq -r --arg only "${ONLY:-}" '.faults | to_entries[] | select(.value.name | contains($only)) | .key' $list | xargs -P "$jobs" -n 1 "$0" judge
 assemble
