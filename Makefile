@@ -122,6 +122,10 @@ $B/shear-lammps: $(call objects,$(ENGINE) $(filter-out solver/shear.c,$(SOLVER))
 $B/compare-checkpoints: $B/obj/tools/compare/checkpoints.o
 	$(CC) $(CFLAGS) $^ -o $@ -lm
 
+$B/obj/tools/compare/retrace.o: private BASE += -Isolver
+$B/retrace: $(call objects,tools/compare/retrace.c $(filter-out solver/shear.c,$(SOLVER)))
+	$(CC) $(CFLAGS) $^ -o $@ -ljansson -lm
+
 $B/unit-tests: $(call objects,$(TESTS) tools/engine/refuse.c $(filter-out tools/golden/main.c,$(GOLDEN)) $(filter-out solver/shear.c,$(SOLVER)) $(filter-out validation/gate.c,$(GATE)))
 	$(CC) $(CFLAGS) $^ -o $@ -lcunit -ljansson -lgsl -lgslcblas -lm
 
@@ -171,6 +175,9 @@ golden: all ## sheared viscosities, code against code: hours of two cores, kept 
 	golden/viscosities/page.py golden/viscosities docs/viscosities.md && (cd golden/viscosities && gnuplot plot.gp) && \
 	echo "golden: $$(grep -h ',viscosity,' golden/viscosities/*-table.csv | wc -l) rows computed, $$(cat validation/cases/6-dense/viscosities-*/case.json | grep -c '"dear"') listed with their cost; verdicts above, exit code $$code"; exit $$code
 
+retrace: all $B/retrace ## the four rows in which paths part: each step of a run of LAMMPS, done again by shear (5 minutes)
+	@tools/compare/retrace.sh $B
+
 engine: all $B/unit-tests ## shear-lammps against shear, pathwise on 1, 2 and 4 ranks; restart; broken engines must be seen
 	@tools/engine/measure.sh $B
 
@@ -208,6 +215,6 @@ help: ## this list
 clean: ## remove build/
 	rm -rf $B
 
-.PHONY: all setup validate test lines coverage sanitize memcheck adapters scenes faults calibrate bench scaling golden engine engine-cost second-opinion ci-files \
+.PHONY: all setup validate test lines coverage sanitize memcheck adapters scenes faults calibrate bench scaling golden retrace engine engine-cost second-opinion ci-files \
 	suite-manifest findings vectors audit verdicts work-precision help clean FORCE
 -include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS) $(ENGINE) $(GOLDEN) $(AUDIT) tools/compare/checkpoints.c))

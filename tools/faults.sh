@@ -15,7 +15,7 @@ jobs=${JOBS:-$(nproc)}
 kept=build/faults/$level
 
 hash_of() { sha1sum | cut -c1-16; }
-sources() { find solver validation -name '*.[ch]' -o -path 'validation/cases/*' -name case.json | LC_ALL=C sort | xargs cat Makefile | hash_of; }
+sources() { { grep -E '^(CC|CFLAGS|BASE) ' Makefile; find solver validation -name '*.[ch]' -o -path 'validation/cases/*' -name case.json | LC_ALL=C sort | xargs cat; } | hash_of; }
 # Cases whose time on the right solver is within two bounds, separated by commas.
 cases_between() { jq -r --argjson a "$1" --argjson b "$2" '[to_entries[] | select(.value >= $a and .value < $b) | .key] | join(",")' "$kept/reference.json"; }
 

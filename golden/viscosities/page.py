@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Puts the rows of *-table.csv between the marks of docs/viscosities.md. `make golden` calls it: page.py TABLE_FOLDER PAGE."""
+"""Puts the rows of *-table.csv and retraced.csv between the marks of docs/viscosities.md. `make golden` and `make retrace` call it: page.py TABLE_FOLDER PAGE."""
 import csv, glob, os, re, sys
 
 folder, page = sys.argv[1:]
@@ -38,7 +38,11 @@ for name in order:
         lines.append(f"| | difference | {v['difference']:.1g} +- {v['difference_error']:.1g} of {v['margin']:.2g} | worst of its margin: {worst.replace('_', ' ')} "
                      f"{w['difference']:.1g} +- {w['difference_error']:.1g} of {w['margin']:.2g} | | | | | | | | |")
 text = open(page).read()
-text, found = re.subn(r"(<!-- table -->\n).*?(<!-- end of table -->)", lambda m: m[1] + "\n".join(lines) + "\n" + m[2], text, flags=re.S)
-if not found:
-    sys.exit(f"{page}: no marks for the table")
+retraced = ["| row | pieces, up to step | places within | stresses within | |", "| --- | --- | --- | --- | --- |"]
+with open(os.path.join(folder, "retraced.csv")) as f:
+    retraced += [f"| {r['row']} | {r['pieces']}, {r['steps']} | {r['places']} | {r['stresses']} | {r['verdict']} |" for r in csv.DictReader(f)]
+for mark, new in ("table", lines), ("retraced", retraced):
+    text, found = re.subn(rf"(<!-- {mark} -->\n).*?(<!-- end of {mark} -->)", lambda m: m[1] + "\n".join(new) + "\n" + m[2], text, flags=re.S)
+    if not found:
+        sys.exit(f"{page}: no marks for the {mark}")
 open(page, "w").write(text)

@@ -8,7 +8,8 @@ from lammps_stock import NOISES, Stock, need
 
 
 class Exact(Stock):
-    """Stock styles, with what the gate's check of paths wants to know besides."""
+    """Stock styles, with what the gate's check of paths and `make retrace` want to know besides."""
+    loads = " fx fy fz tqx tqy tqz"
 
     def contact_stress(self, step, rows):
         """Also slipping.csv: how many contacts there are, and how many are at the cap."""

@@ -24,7 +24,7 @@ def only(where, what, known):
 class Stock:
     """The question in LAMMPS's axes: `case` and `scene` as read, cell, species, particles by state; its deck; its answer."""
     tells_apart = False     # whether the stresses of several pair forces are known
-    newton = "off"
+    newton, loads = "off", ""   # loads: further columns of LAMMPS's dump, force and torque of each sphere
 
     # ---- reading a case, and refusing what has no equivalent ----
 
@@ -211,7 +211,7 @@ class Stock:
             else:
                 f.write(self.physics(0, self.forces) + f"reset_timestep {self.first - 1}\ntimestep {self.dt!r}\ngroup moving empty\nfix move moving nve/sphere\nthermo {self.stress_every}\n")
                 if self.states_every:
-                    f.write(dump.format(self.states_every, "lammps.dump", "vx vy vz omegax omegay omegaz", ""))
+                    f.write(dump.format(self.states_every, "lammps.dump", "vx vy vz omegax omegay omegaz" + self.loads, ""))
                 if self.stress_every and self.friction:
                     f.write("compute pairs all pair/local dist force fx fy fz p1 p2 p3 cutoff radius\n"
                             f"dump p all local {self.stress_every} lammps.pairs c_pairs[*]\ndump_modify p format float %.17g\n")
@@ -237,8 +237,8 @@ class Stock:
     # ---- the answer ----
 
     def vector(self, v, handed=1):
-        """Three numbers in the scene's axes."""
-        return [v[self.axis.index(k)] * handed for k in range(3)]
+        """Three numbers in the scene's axes, or nothing of nothing."""
+        return [v[self.axis.index(k)] * handed for k in range(3) if v]
 
     def origins(self):
         contact = (["contact_normal"] if "contact" in self.forces else []) + (["contact_tangential"] if self.friction else [])
@@ -277,12 +277,12 @@ class Stock:
                     f.write(f"{step - self.first},{self.time + passed:.17g},{abs(self.rate) * passed:.17g}" + self.stress_cells(0, part, kinetic))
         if self.states_every:
             with open(os.path.join(out, "trajectory.csv"), "w") as f:
-                f.write("step,time,id,x,y,z,ux,uy,uz,wx,wy,wz\n")
+                f.write("step,time,id,x,y,z,ux,uy,uz,wx,wy,wz" + (",fx,fy,fz,tx,ty,tz" if self.loads else "") + "\n")
                 for step, tilt, rows in frames(os.path.join(out, "lammps.dump")):
                     tilt -= self.rate * self.edge[1] * self.dt       # the cell in the dump is a step ahead
                     for id, ix, iy, iz, x, y, z, ux, uy, uz, *w in rows if step >= self.first else ():   # before, the spheres do not move
                         place = self.vector((x + ix * self.edge[0] + iy * tilt, y + iy * self.edge[1], z + iz * self.edge[2]))
-                        cells = place + self.vector((ux + iy * self.rate * self.edge[1], uy, uz)) + self.vector(w, self.handed)
+                        cells = place + self.vector((ux + iy * self.rate * self.edge[1], uy, uz)) + self.vector(w, self.handed) + self.vector(w[3:]) + self.vector(w[6:], self.handed)
                         f.write(f"{step - self.first},{self.time + (step - self.first) * self.dt:.17g},{id:.0f}," + ",".join(f"{c:.17g}" for c in cells) + "\n")
 
     def answer_forces(self, out):
