@@ -4,8 +4,9 @@
 #
 #     make faults [ONLY=word] [JOBS=2] [LEVEL=A]
 #
-# Seconds are those of one core, of the gate and the candidate. The table of all entries is docs/measured/faults.csv. Its `key`s are hashes of the
-# solver, the suite and the entry: what was judged with the same key is not judged again, also in another clone; other cells stay as they were.
+# Seconds are those of one core, of the gate and the candidate. The table of all entries is docs/measured/faults.csv. Its `key`s are two hashes: of
+# the sources and the entry, and of the case that caught the fault (of all cases, if none did). What was judged with the same key is not judged again, also in
+# another clone; other cells stay as they were.
 set -eu
 cd "$(dirname "$0")/.."
 list=validation/faults/faults.json
@@ -15,7 +16,14 @@ jobs=${JOBS:-$(nproc)}
 kept=build/faults/$level
 
 hash_of() { sha1sum | cut -c1-16; }
-sources() { { grep -E '^(CC|CFLAGS|BASE) ' Makefile; find solver validation -name '*.[ch]' -o -path 'validation/cases/*' -name case.json | LC_ALL=C sort | xargs cat; } | hash_of; }
+sources() { { grep -E '^(CC|CFLAGS|BASE) ' Makefile; find solver validation -name '*.[ch]' | LC_ALL=C sort | xargs cat; } | hash_of; }
+# Of a case, or of all where none is named.
+hash_of_case() { find validation/cases -path "*/${1:-*}/case.json" | LC_ALL=C sort | xargs cat /dev/null | hash_of; }
+# Line K of the list, and the hash under which it is kept.
+entry() { jq -c ".faults[$1]" $list; }
+key() { printf '%s %s' "$SOURCES" "$1" | hash_of; }
+# Is what file $1 says of a fault said of the cases as they are now?
+current() { [ -s "$1" ] && [ "$(jq -r .of "$1")" = "$(hash_of_case "$(jq -r .case "$1")")" ]; }
 # Cases whose time on the right solver is within two bounds, separated by commas.
 cases_between() { jq -r --argjson a "$1" --argjson b "$2" '[to_entries[] | select(.value >= $a and .value < $b) | .key] | join(",")' "$kept/reference.json"; }
 
@@ -32,20 +40,21 @@ run() {
 # The right solver must pass; how long its cases take says in which order they are asked.
 reference() {
     mkdir -p "$kept"
-    [ "$(cat "$kept/reference" 2>/dev/null)" = "$SOURCES" ] && return
+    now="$SOURCES $(hash_of_case)"
+    [ "$(cat "$kept/reference" 2>/dev/null)" = "$now" ] && return
     echo "faults: the right solver first"
     run build/shear "$kept" --jobs "$(nproc)"
     [ $code = 0 ] || { echo "faults: the right solver is red"; cat "$kept/gate.txt"; exit 1; }
     awk '/ pass .*[0-9]$/ { print $2, $NF }' "$kept/gate.txt" | jq -Rn '[inputs / " " | { (.[0]): (.[1] | tonumber) }] | add' >"$kept/reference.json"
     rm -rf "$kept/cases" "$kept/report"
-    echo "$SOURCES" >"$kept/reference"
+    echo "$now" >"$kept/reference"
 }
 
 # One line of JSON about entry K. The verdict is that of the first case that is red.
 judge() {
-    entry=$(jq -c ".faults[$1]" $list)
-    key=$(printf '%s %s' "$SOURCES" "$entry" | hash_of)
-    [ -s "$kept/$key.json" ] && return
+    entry=$(entry "$1")
+    key=$(key "$entry")
+    ! current "$kept/$key.json" || return 0
     work=build/faults/$level-$1
     rm -rf "$work" && mkdir -p "$work/build/obj" && cp -a solver Makefile "$work"
     cp -a build/obj/solver "$work/build/obj" && cp -a build/commit "$work/build"     # with their times: only what the fault touches is compiled anew
@@ -70,7 +79,7 @@ judge() {
     times >"$work/after"
     seconds=$(awk 'FNR == 2 { split($1, u, /[ms]/); split($2, s, /[ms]/); t = 60 * (u[1] + s[1]) + u[2] + s[2]; if (n++) printf "%.2f", t - first; else first = t }' \
         "$work/before" "$work/after")
-    jq -cn --arg case "$where" --arg layer "$layer" --argjson seconds "$seconds" --arg sentence "$said" '$ARGS.named' >"$kept/$key.json.new"
+    jq -cn --arg case "$where" --arg layer "$layer" --argjson seconds "$seconds" --arg sentence "$said" --arg of "$(hash_of_case "$where")" '$ARGS.named' >"$kept/$key.json.new"
     mv "$kept/$key.json.new" "$kept/$key.json"
     rm -rf "$work"
     right=$(printf %s "$entry" | jq -r --arg case "$where" 'if (.class == "equivalent") == ($case == "") then "ok " else "WRONG" end')
@@ -83,21 +92,23 @@ restore() {
 import csv, json, os, sys
 for row in csv.DictReader(open(sys.argv[1])):
     for level, prefix in ("A", ""), ("B", "B "), ("C", "C "):
-        path = f"build/faults/{level}/{row.get('key ' + level)}.json"
-        if row.get("key " + level) and not os.path.exists(path):
+        key, _, of = (row.get("key " + level) or "").partition(" ")
+        path = f"build/faults/{level}/{key}.json"
+        if of and not os.path.exists(path):
             os.makedirs(os.path.dirname(path), exist_ok=True)
             json.dump({"case": "" if row[level] in ("passes, as it must", "NOT CAUGHT") else row[level], "layer": row["layer"] if level == "A" else "",
-                       "seconds": float(row[prefix + "seconds"]), "sentence": row["sentence at level A"] if level == "A" else ""}, open(path, "w"))
+                       "seconds": float(row[prefix + "seconds"]), "sentence": row["sentence at level A"] if level == "A" else "", "of": of}, open(path, "w"))
 EOF
 }
 
 # The table: what each level has said of each entry; of levels that have no answer the old cells.
 assemble() {
     for k in $(seq 0 $((count - 1))); do
-        entry=$(jq -c ".faults[$k]" $list)
-        key=$(printf '%s %s' "$SOURCES" "$entry" | hash_of)
+        entry=$(entry "$k")
+        key=$(key "$entry")
         for l in A B C; do
-            [ -s "build/faults/$l/$key.json" ] && jq --arg key "$key" '. + { key: $key }' "build/faults/$l/$key.json" || echo null
+            said=build/faults/$l/$key.json
+            current "$said" && jq --arg key "$key" '. + { key: "\($key) \(.of)" }' "$said" || echo null
         done | jq -cs --argjson entry "$entry" '$entry + { A: .[0], B: .[1], C: .[2] }'
     done >build/faults/all.jsonl
     [ -f $table ] && python3 -c 'import csv, json, sys; json.dump({r["fault"]: r for r in csv.DictReader(open(sys.argv[1]))}, sys.stdout)' $table \
