@@ -163,6 +163,12 @@ calibrate: all ## false verdicts of the statistical checks on the correct solver
 	$B/gate calibrate --candidate "$B/shear --evaluate" --seeds 1 --table docs/measured/calibration.csv --work $B/calibrating >$B/calibration.txt; \
 	tools/docs/calibration.py docs/measured/calibration.csv $B/calibration.txt docs/calibration.png; exit $$code
 
+OFFSETS ?= 1 2 3 4
+seeds: all ## the whole fast tier on our solver under other seeds (OFFSETS="1 2 3 4"; a minute each): none may be red
+	@for k in $(OFFSETS); do \
+		code=0; $B/gate run --candidate "$B/shear --evaluate" --jobs $(JOBS) --seed-offset $$k --work $B/seeds --report $B/seeds-report >$B/seeds.txt || code=$$?; \
+		echo "seeds: offset $$k: $$(tail -1 $B/seeds.txt)"; [ $$code = 0 ] || { grep -A3 " FAIL \| inconclusive " $B/seeds.txt; exit 1; }; done
+
 bench: all ## particle-steps per second and instructions per particle-step, beside stock LAMMPS
 	@tools/bench/bench.sh $B
 
@@ -215,6 +221,6 @@ help: ## this list
 clean: ## remove build/
 	rm -rf $B
 
-.PHONY: all setup validate test lines coverage sanitize memcheck adapters scenes faults calibrate bench scaling golden retrace engine engine-cost second-opinion ci-files \
+.PHONY: all setup validate test lines coverage sanitize memcheck adapters scenes faults calibrate seeds bench scaling golden retrace engine engine-cost second-opinion ci-files \
 	suite-manifest findings vectors audit verdicts work-precision help clean FORCE
 -include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS) $(ENGINE) $(GOLDEN) $(AUDIT) tools/compare/checkpoints.c))

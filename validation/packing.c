@@ -15,6 +15,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { MOST_DRAWS = 20 };
+
 double packing_edge(const struct packing_species *species, int species_count, double phi)
 {
     double volume = 0;
@@ -115,11 +117,14 @@ bool packing_make(const struct packing_species *species, int species_count, doub
         for (int n = 0; n < species[s].count; n++, i++) {
             row[i] = (struct state_row){ .id = i + 1, .species = s + 1 };
             radius[i] = 1.001 * species[s].radius;
-            for (int k = 0; k < 3; k++)
-                x[3 * i + k] = edge * gsl_rng_uniform(rng);
         }
+    bool good = false;
+    for (int draw = 0; draw < MOST_DRAWS && !good; draw++) {    /* a few spheres among their own images may be stuck where a larger crowd gives way */
+        for (int k = 0; k < 3 * count; k++)
+            x[k] = edge * gsl_rng_uniform(rng);
+        good = descend(x, radius, count, edge, work);
+    }
     gsl_rng_free(rng);
-    const bool good = descend(x, radius, count, edge, work);
     for (int i = 0; i < count; i++) {
         for (int k = 0; k < 3; k++)
             row[i].x[k] = x[3 * i + k] - edge * floor(x[3 * i + k] / edge);

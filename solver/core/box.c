@@ -38,20 +38,23 @@ mat3 box_deformation(const struct box *b, double from, double to)
     return F;
 }
 
-void box_set_time(struct box *b, double time)
+static void set_cell(struct box *b)     /* H(t) = F H(0) M */
 {
-    b->time = time;
-    if (!b->flowing)
-        return;
-    if (b->flow)
-        set_gradient(b, b->flow->gradient(b->flow, time));
-    const mat3 F = box_deformation(b, 0.0, time);
+    const mat3 F = box_deformation(b, 0.0, b->time);
     const mat3 unmapped = mat3_product(&F, &b->start);
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 3; c++)
             b->cell.m[r][c] = unmapped.m[r][0] * b->lattice[0][c] + unmapped.m[r][1] * b->lattice[1][c] + unmapped.m[r][2] * b->lattice[2][c];
-    double same_volume;
-    b->inverse = inverse_of(&b->cell, &same_volume);
+    b->inverse = inverse_of(&b->cell, &(double){ 0.0 });        /* shear keeps the volume */
+}
+
+void box_set_time(struct box *b, double time)
+{
+    b->time = time;
+    if (b->flow)
+        set_gradient(b, b->flow->gradient(b->flow, time));
+    if (b->flowing)
+        set_cell(b);
 }
 
 bool box_new(struct box *b, const mat3 *cell, const bool periodic[3], const mat3 *gradient, struct error *e)
@@ -94,10 +97,9 @@ static int excess(const struct box *b, int a, int c)
 
 bool box_wants_remap(const struct box *b)
 {
-    for (int a = 0; a < 3 && b->flowing; a++)
-        for (int c = 0; c < 3; c++)
-            if (excess(b, a, c))
-                return true;
+    for (int k = 0; k < 9 && b->flowing; k++)
+        if (excess(b, k / 3, k % 3))
+            return true;
     return false;
 }
 
@@ -109,8 +111,7 @@ void box_remap(struct box *b)
                 const int turns = excess(b, a, c);
                 for (int r = 0; r < 3 && turns; r++)
                     b->lattice[r][c] -= turns * b->lattice[r][a];
-                if (turns)
-                    box_set_time(b, b->time);
+                set_cell(b);    /* and not the flow: images move with that of the step */
             }
 }
 
