@@ -16,7 +16,7 @@ GATE     := $(wildcard validation/*.c validation/checks/*.c validation/theory/*.
 TESTS    := $(wildcard tests/*.c)
 ENGINE   := $(wildcard tools/engine/*.c)
 objects   = $(1:%.c=$B/obj/%.o)
-PROGRAMS := $B/shear $B/gate $B/lammps-candidate $B/lammps-host $B/shear-lammps $B/compare-checkpoints
+PROGRAMS := $B/shear $B/gate $B/lammps-candidate $B/lammps-host $B/shear-lammps $B/compare-checkpoints $B/retrace
 # Takes part in the jobs of a `make -jN` that called it; else uses all cores.
 PARALLEL  = --no-print-directory $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(JOBS))
 
@@ -181,7 +181,7 @@ golden: all ## sheared viscosities, code against code: hours of two cores, kept 
 	golden/viscosities/page.py golden/viscosities docs/viscosities.md && (cd golden/viscosities && gnuplot plot.gp) && \
 	echo "golden: $$(grep -h ',viscosity,' golden/viscosities/*-table.csv | wc -l) rows computed, $$(cat validation/cases/6-dense/viscosities-*/case.json | grep -c '"dear"') listed with their cost; verdicts above, exit code $$code"; exit $$code
 
-retrace: all $B/retrace ## the four rows in which paths part: each step of a run of LAMMPS, done again by shear (5 minutes)
+retrace: all ## the four rows in which paths part: each step of a run of LAMMPS, done again by shear (5 minutes)
 	@tools/compare/retrace.sh $B
 
 engine: all $B/unit-tests ## shear-lammps against shear, pathwise on 1, 2 and 4 ranks; restart; broken engines must be seen
@@ -223,4 +223,4 @@ clean: ## remove build/
 
 .PHONY: all setup validate test lines coverage sanitize memcheck adapters scenes faults calibrate seeds bench scaling golden retrace engine engine-cost second-opinion ci-files \
 	suite-manifest findings vectors audit verdicts work-precision help clean FORCE
--include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS) $(ENGINE) $(GOLDEN) $(AUDIT) tools/compare/checkpoints.c))
+-include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS) $(ENGINE) $(GOLDEN) $(AUDIT) tools/compare/checkpoints.c tools/compare/retrace.c))

@@ -57,16 +57,19 @@ int usage(const char *format, ...)
     return EXIT_USAGE;
 }
 
-static bool whole_number(const char *text, long least, long most, long *value)
+/* 0, or the exit code after a message. */
+static int whole_number(const char *option, const char *text, long least, long most, long *value)
 {
     char *end;
     *value = strtol(text, &end, 10);
-    return *text && *end == '\0' && *value >= least && *value <= most;
+    const bool good = *text && *end == '\0' && *value >= least && *value <= most;
+    return good ? 0 : usage("%s '%s' is no whole number from %ld to %ld", option, text, least, most);
 }
 
 int options_parse(struct options *o, const char *name, const char *value)
 {
     long n;
+    int code = 0;
     if (!value)
         return usage("%s needs a value", name);
     const struct { const char *name, **place; } texts[] = {
@@ -84,12 +87,10 @@ int options_parse(struct options *o, const char *name, const char *value)
     else if (strcmp(name, "--tier") == 0)
         return tier_parse(value, &o->tier) ? 0 : usage("there is no tier '%s'; there are fast, standard, full", value);
     else if (strcmp(name, "--jobs") == 0) {
-        if (!whole_number(value, 1, 256, &n))
-            return usage("--jobs '%s' is no whole number from 1 to 256", value);
+        code = whole_number(name, value, 1, 256, &n);
         o->jobs = (int)n;
     } else if (strcmp(name, "--stop-after") == 0) {
-        if (!whole_number(value, 1, 1000, &n))
-            return usage("--stop-after '%s' is no whole number from 1 to 1000", value);
+        code = whole_number(name, value, 1, 1000, &n);
         o->stop_after = (int)n;
     } else if (strcmp(name, "--patience") == 0) {
         char *end;
@@ -97,16 +98,14 @@ int options_parse(struct options *o, const char *name, const char *value)
         if (end == value || *end || !(o->patience > 0 && o->patience <= 1e6))
             return usage("--patience '%s' is no number above 0", value);
     } else if (strcmp(name, "--seed-offset") == 0) {
-        if (!whole_number(value, 0, 2147483647, &n))
-            return usage("--seed-offset '%s' is no whole number from 0 to 2147483647", value);
+        code = whole_number(name, value, 0, 2147483647, &n);
         o->seed_offset = (unsigned)n;
     } else if (strcmp(name, "--seeds") == 0) {
-        if (!whole_number(value, 1, 1000000, &n))
-            return usage("--seeds '%s' is no whole number from 1 to 1000000", value);
+        code = whole_number(name, value, 1, 1000000, &n);
         o->seeds = (unsigned)n;
     } else
         return usage("unknown option '%s'; see gate --help", name);
-    return 0;
+    return code;
 }
 
 /* Whether `word` is one of the comma-separated `list`. */
