@@ -229,13 +229,34 @@ static bool try_split(struct check_run *run, const struct crowd *crowd)
     return answered;
 }
 
-/* Spheres at random, sheared by the candidate for some strain: the start of all runs. */
+/* Spheres where the case says (parameters.places, in a cell of parameters.edge), or at random. They start with the flow. */
+static bool place(struct check_run *run, struct crowd *crowd, const struct packing_species kinds[2])
+{
+    const json_t *parameters = run->gate_case->parameters, *places = json_object_get(parameters, "places");
+    char why[WHY_LENGTH] = "the gate is out of memory";
+    crowd->edge = places ? scene_number(parameters, "edge", NAN) : packing_edge(kinds, 2, scene_number(parameters, "phi", NAN));
+    crowd->row = calloc(crowd->count, sizeof *crowd->row);
+    if (!crowd->row || (!places && !packing_make(kinds, 2, crowd->edge, crowd->rate, run->seed, crowd->row, why))) {
+        check_garbage(run, why);
+        return false;
+    }
+    for (size_t i = 0; places && i < crowd->count; i++) {
+        struct state_row *r = &crowd->row[i];
+        *r = (struct state_row){ .id = (int)i + 1, .species = i < (size_t)kinds[0].count ? 1 : 2 };
+        for (int k = 0; k < 3; k++)
+            r->x[k] = json_number_value(json_array_get(json_array_get(places, i), (size_t)k));
+        r->u[0] = crowd->rate * r->x[1];
+        r->w[2] = -0.5 * crowd->rate;
+    }
+    return true;
+}
+
+/* The crowd, sheared by the candidate for some strain: the start of all runs. */
 static bool prepare(struct check_run *run, struct crowd *crowd)
 {
     const json_t *parameters = run->gate_case->parameters;
     double count[2], strain = scene_number(parameters, "strain", NAN);
     size_t species;
-    char why[WHY_LENGTH];
     struct model m;
     struct track track;
     if (!model_read(run, crowd->scene, &m))
@@ -243,16 +264,12 @@ static bool prepare(struct check_run *run, struct crowd *crowd)
     parameter_list(parameters, "counts", count, &species, 2);
     const struct packing_species kinds[2] = { { m.radius[0], (int)count[0] }, { m.radius[1], (int)count[1] } };
     crowd->count = (size_t)(kinds[0].count + kinds[1].count);
-    crowd->edge = packing_edge(kinds, 2, scene_number(parameters, "phi", NAN));
     crowd->rate = m.gradient[0][1];
     crowd->radius = m.radius[0];
     crowd->dt = scene_number(crowd->scene, "dynamics.verlet.dt", NAN);
     crowd->steps = (int)scene_number(parameters, "steps", NAN);
-    crowd->row = calloc(crowd->count, sizeof *crowd->row);
-    if (!crowd->row || !packing_make(kinds, 2, crowd->edge, crowd->rate, run->seed, crowd->row, why)) {
-        check_garbage(run, crowd->row ? why : "the gate is out of memory");
+    if (!place(run, crowd, kinds))
         return false;
-    }
     scene_set(crowd->scene, "box.lengths", json_pack("[fff]", crowd->edge, crowd->edge, crowd->edge));
     const int at = (int)(strain / (fabs(crowd->rate) * crowd->dt));
     json_t *scene = json_deep_copy(crowd->scene);

@@ -250,7 +250,7 @@ void film_judge_stress_table(const struct film *f)
     struct worst strain = WORST_NONE, eta = WORST_NONE;
     size_t rows = 0;
     const double rate = film_rate(f), unit = f->m.viscosity * rate;
-    double (*S)[5] = rate != 0.0 ? total_stress(f, &rows) : NULL;
+    double (*S)[5] = rate != 0.0 && f->m.has_lubrication ? total_stress(f, &rows) : NULL;       /* without it not all columns are there */
     if (S && film_table(f, "stress.csv", "step,time,strain,eta_r", &t)) {
         for (size_t r = 0; r < rows && r < t.rows; r++) {
             worst_see(&strain, table_at(&t, r, 2), fabs(rate) * (table_at(&t, r, 1) - f->begin), 1.0, r);

@@ -33,5 +33,6 @@ void check_tether(struct check_run *run);
 void check_stages(struct check_run *run);
 void check_thermal(struct check_run *run);
 void check_stages_pair(struct check_run *run);
+void check_noise_period(struct check_run *run);
 
 #endif
