@@ -4,7 +4,8 @@
 #
 #     make faults [ONLY=word] [JOBS=2] [LEVEL=A]
 #
-# Seconds are those of one core, of the gate and the candidate. The table of all entries is docs/measured/faults.csv. Its `key`s are two hashes: of
+# Seconds are those of one core, of the gate and the candidate; LAMMPS, the reference, answers each question once for all.
+# At levels B and C the cases that caught the fault at the levels above are asked first, then all in their order. The table of all entries is docs/measured/faults.csv. Its `key`s are two hashes: of
 # the sources and the entry, and of the case that caught the fault (of all cases, if none did). What was judged with the same key is not judged again, also in
 # another clone; other cells stay as they were.
 set -eu
@@ -19,6 +20,12 @@ hash_of() { sha1sum | cut -c1-16; }
 sources() { { grep -E '^(CC|CFLAGS|BASE) ' Makefile; find solver validation -name '*.[ch]' | LC_ALL=C sort | xargs cat; } | hash_of; }
 # Of a case, or of all where none is named.
 hash_of_case() { find validation/cases -path "*/${1:-*}/case.json" | LC_ALL=C sort | xargs cat /dev/null | hash_of; }
+# The cases that caught entry $1 at the levels above this one.
+known_from_above() {
+    [ "$level" = A ] || for above in A B; do
+        [ "$above" = "$level" ] || [ ! -s "build/faults/$above/$1.json" ] || jq -r '.case | select(. != "")' "build/faults/$above/$1.json"
+    done
+}
 # Line K of the list, and the hash under which it is kept.
 entry() { jq -c ".faults[$1]" $list; }
 key() { printf '%s %s' "$SOURCES" "$1" | hash_of; }
@@ -64,10 +71,8 @@ judge() {
     make --no-print-directory -s -C "$work" B=build CFLAGS="-O2 -w" build/shear 2>"$work/make.txt" ||
         { echo "faults: does not build: $entry" >&2; cat "$work/make.txt" >&2; exit 255; }
     times >"$work/before"
-    where="" layer="" said="" code=0
-    for span in "0 0.1" "0.1 0.2" "0.2 0.4" "0.4 0.8" "0.8 1.6" "1.6 3.2" "3.2 6.4" "6.4 1e9"; do
-        cases=$(cases_between ${span})
-        [ -n "$cases" ] || continue
+    where="" layer="" said=""
+    for cases in $(known_from_above "$key") $(for span in "0 0.1" "0.1 0.2" "0.2 0.4" "0.4 0.8" "0.8 1.6" "1.6 3.2" "3.2 6.4" "6.4 1e9"; do cases_between $span; done); do
         run "$work/build/shear" "$work" --case "$cases" --stop-after 1
         case $code in 0 | 77) continue ;; esac
         layer=$(awk '/ FAIL | inconclusive / { print $1; exit }' "$work/gate.txt")
@@ -134,9 +139,10 @@ summary() {
           ($faults[] | select(at.case == "") | "  not caught: \(.name)"), ($same[] | select(at.case != "") | "  flagged: \(.name): \(at.sentence)")' build/faults/all.jsonl
 }
 
-export SOURCES="${SOURCES:-$(sources)}"
+export SOURCES="${SOURCES:-$(sources)}" GATE_REFERENCE="$PWD/tools/once.sh $PWD/build/faults/reference $PWD/build/lammps-candidate --own reference"
 [ "${1:-}" = judge ] && { judge "$2"; exit; }
 count=$(jq '.faults | length' $list)
+rm -rf build/faults/reference && mkdir -p build/faults/reference
 restore
 reference
 jq -r --arg only "${ONLY:-}" '.faults | to_entries[] | select(.value.name | contains($only)) | .key' $list | xargs -P "$jobs" -n 1 "$0" judge
