@@ -17,7 +17,11 @@ jobs=${JOBS:-$(nproc)}
 kept=build/faults/$level
 
 hash_of() { sha1sum | cut -c1-16; }
-sources() { { grep -E '^(CC|CFLAGS|BASE) ' Makefile; find solver validation -name '*.[ch]' | LC_ALL=C sort | xargs cat; } | hash_of; }
+# What asks by steps (validation/level_b*) speaks at level B alone.
+sources() {
+    [ "$level" = B ] && other=none || other='level_b*'
+    { grep -E '^(CC|CFLAGS|BASE) ' Makefile; find solver validation -name '*.[ch]' ! -name "$other" | LC_ALL=C sort | xargs cat; } | hash_of
+}
 # Of a case, or of all where none is named.
 hash_of_case() { find validation/cases -path "*/${1:-*}/case.json" | LC_ALL=C sort | xargs cat /dev/null | hash_of; }
 # The cases that caught entry $1 at the levels above this one.
@@ -145,7 +149,7 @@ count=$(jq '.faults | length' $list)
 rm -rf build/faults/reference && mkdir -p build/faults/reference
 restore
 reference
-jq -r --arg only "${ONLY:-}" '.faults | to_entries[] | select(.value.name | contains($only)) | .key' $list | xargs -P "$jobs" -n 1 "$0" judge
+jq -r --arg only "${ONLY:-}" '.faults | to_entries[] | select(.value.name | contains($only)) | .key' $list | xargs -r -P "$jobs" -n 1 "$0" judge
 assemble
 summary | tee build/faults/summary.txt
 [ "$(wc -l <build/faults/summary.txt)" = 1 ]
