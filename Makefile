@@ -163,6 +163,10 @@ calibrate: all ## false verdicts of the statistical checks on the correct solver
 	$B/gate calibrate --candidate "$B/shear --evaluate" --seeds 1 --table docs/measured/calibration.csv --work $B/calibrating >$B/calibration.txt; \
 	tools/docs/calibration.py docs/measured/calibration.csv $B/calibration.txt docs/calibration.png; exit $$code
 
+levels: all ## the fast tier against our own solver as if it were of entry level B, then C
+	@for l in B C; do echo "== level $$l"; \
+		$B/gate run --candidate "$B/shear --evaluate" --level $$l --jobs $(JOBS) --work $B/levels --report $B/levels-report || exit 1; done
+
 OFFSETS ?= 1 2 3 4
 seeds: all ## the whole fast tier on our solver under other seeds (OFFSETS="1 2 3 4"; a minute each): none may be red
 	@for k in $(OFFSETS); do \
@@ -221,6 +225,6 @@ help: ## this list
 clean: ## remove build/
 	rm -rf $B
 
-.PHONY: all setup validate test lines coverage sanitize memcheck adapters scenes faults calibrate seeds bench scaling golden retrace engine engine-cost second-opinion ci-files \
+.PHONY: all setup validate test lines coverage sanitize memcheck adapters scenes faults calibrate levels seeds bench scaling golden retrace engine engine-cost second-opinion ci-files \
 	suite-manifest findings vectors audit verdicts work-precision help clean FORCE
 -include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS) $(ENGINE) $(GOLDEN) $(AUDIT) tools/compare/checkpoints.c tools/compare/retrace.c))

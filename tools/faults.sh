@@ -17,18 +17,21 @@ jobs=${JOBS:-$(nproc)}
 kept=build/faults/$level
 
 hash_of() { sha1sum | cut -c1-16; }
-# What asks by steps (validation/level_b*) speaks at level B alone.
+# The sources of a level: what asks by steps (validation/level_b*) speaks at level B alone.
 sources() {
-    [ "$level" = B ] && other=none || other='level_b*'
+    [ "$1" = B ] && other=none || other='level_b*'
     { grep -E '^(CC|CFLAGS|BASE) ' Makefile; find solver validation -name '*.[ch]' ! -name "$other" | LC_ALL=C sort | xargs cat; } | hash_of
 }
 # Of a case, or of all where none is named.
 hash_of_case() { find validation/cases -path "*/${1:-*}/case.json" | LC_ALL=C sort | xargs cat /dev/null | hash_of; }
-# The cases that caught entry $1 at the levels above this one.
+# The cases that caught entry $1 at the levels above this one, as the table says.
 known_from_above() {
-    [ "$level" = A ] || for above in A B; do
-        [ "$above" = "$level" ] || [ ! -s "build/faults/$above/$1.json" ] || jq -r '.case | select(. != "")' "build/faults/$above/$1.json"
-    done
+    jq -r --argjson entry "$1" --arg level "$level" '.[$entry.name] // {} | { A: [], B: [.A], C: [.A, .B] }[$level] | unique[] | select(. and test("^[-a-z0-9.]+$"))' \
+        build/faults/before.json
+}
+# The table as it was, by name.
+before() {
+    [ ! -f $table ] && echo '{}' || python3 -c 'import csv, json, sys; json.dump({r["fault"]: r for r in csv.DictReader(open(sys.argv[1]))}, sys.stdout)' $table
 }
 # Line K of the list, and the hash under which it is kept.
 entry() { jq -c ".faults[$1]" $list; }
@@ -76,7 +79,7 @@ judge() {
         { echo "faults: does not build: $entry" >&2; cat "$work/make.txt" >&2; exit 255; }
     times >"$work/before"
     where="" layer="" said=""
-    for cases in $(known_from_above "$key") $(for span in "0 0.1" "0.1 0.2" "0.2 0.4" "0.4 0.8" "0.8 1.6" "1.6 3.2" "3.2 6.4" "6.4 1e9"; do cases_between $span; done); do
+    for cases in $(known_from_above "$entry") $(for span in "0 0.1" "0.1 0.2" "0.2 0.4" "0.4 0.8" "0.8 1.6" "1.6 3.2" "3.2 6.4" "6.4 1e9"; do cases_between $span; done); do
         run "$work/build/shear" "$work" --case "$cases" --stop-after 1
         case $code in 0 | 77) continue ;; esac
         layer=$(awk '/ FAIL | inconclusive / { print $1; exit }' "$work/gate.txt")
@@ -112,23 +115,24 @@ EOF
 
 # The table: what each level has said of each entry; of levels that have no answer the old cells.
 assemble() {
+    for l in A B C; do sources "$l" >build/faults/sources-$l; done
     for k in $(seq 0 $((count - 1))); do
         entry=$(entry "$k")
-        key=$(key "$entry")
         for l in A B C; do
+            key=$(SOURCES=$(cat build/faults/sources-$l) && key "$entry")
             said=build/faults/$l/$key.json
             current "$said" && jq --arg key "$key" '. + { key: "\($key) \(.of)" }' "$said" || echo null
         done | jq -cs --argjson entry "$entry" '$entry + { A: .[0], B: .[1], C: .[2] }'
     done >build/faults/all.jsonl
-    [ -f $table ] && python3 -c 'import csv, json, sys; json.dump({r["fault"]: r for r in csv.DictReader(open(sys.argv[1]))}, sys.stdout)' $table \
-        >build/faults/before.json || echo '{}' >build/faults/before.json
+    before >build/faults/before.json
     jq -rn --slurpfile old build/faults/before.json '
+        def number: if . == "" then "" else tonumber? end;
         def caught(x; equivalent): if x.case == "" then (if equivalent then "passes, as it must" else "NOT CAUGHT" end) else x.case end;
         ["fault", "class", "origin", "file", "A", "layer", "seconds", "B", "B seconds", "C", "C seconds", "sentence at level A", "key A", "key B", "key C"],
         (inputs | . as $f | ($old[0][.name] // {}) as $was | (.class == "equivalent") as $e | [.name, .class, .origin, .file]
-            + (if .A then [caught(.A; $e), .A.layer, .A.seconds] else [$was.A, $was.layer, $was.seconds] end)
-            + (if .B then [caught(.B; $e), .B.seconds] else [$was.B, $was["B seconds"]] end)
-            + (if .C then [caught(.C; $e), .C.seconds] else [$was.C, $was["C seconds"]] end)
+            + (if .A then [caught(.A; $e), .A.layer, .A.seconds] else [$was.A, $was.layer, ($was.seconds | number)] end)
+            + (if .B then [caught(.B; $e), .B.seconds] else [$was.B, ($was["B seconds"] | number)] end)
+            + (if .C then [caught(.C; $e), .C.seconds] else [$was.C, ($was["C seconds"] | number)] end)
             + [if .A then .A.sentence else $was["sentence at level A"] end]
             + [.A.key // $was["key A"], .B.key // $was["key B"], .C.key // $was["key C"]]) | @csv' build/faults/all.jsonl >$table.new
     mv $table.new $table
@@ -143,11 +147,12 @@ summary() {
           ($faults[] | select(at.case == "") | "  not caught: \(.name)"), ($same[] | select(at.case != "") | "  flagged: \(.name): \(at.sentence)")' build/faults/all.jsonl
 }
 
-export SOURCES="${SOURCES:-$(sources)}" GATE_REFERENCE="$PWD/tools/once.sh $PWD/build/faults/reference $PWD/build/lammps-candidate --own reference"
+export SOURCES="${SOURCES:-$(sources "$level")}" GATE_REFERENCE="$PWD/tools/once.sh $PWD/build/faults/reference $PWD/build/lammps-candidate --own reference"
 [ "${1:-}" = judge ] && { judge "$2"; exit; }
 count=$(jq '.faults | length' $list)
 rm -rf build/faults/reference && mkdir -p build/faults/reference
 restore
+before >build/faults/before.json
 reference
 jq -r --arg only "${ONLY:-}" '.faults | to_entries[] | select(.value.name | contains($only)) | .key' $list | xargs -r -P "$jobs" -n 1 "$0" judge
 assemble
