@@ -22,8 +22,12 @@ sources() {
     [ "$1" = B ] && other=none || other='level_b*'
     { grep -E '^(CC|CFLAGS|BASE) ' Makefile; find solver validation -name '*.[ch]' ! -name "$other" | LC_ALL=C sort | xargs cat; } | hash_of
 }
-# Of a case, or of all where none is named.
-hash_of_case() { find validation/cases -path "*/${1:-*}/case.json" | LC_ALL=C sort | xargs cat /dev/null | hash_of; }
+# Of a case, or of all where none is named; as they were when this began.
+hash_of_case() {
+    known=build/faults/hashes/${1:-all}
+    [ -s "$known" ] || find validation/cases -path "*/${1:-*}/case.json" | LC_ALL=C sort | xargs cat /dev/null | hash_of >"$known"
+    cat "$known"
+}
 # The cases that caught entry $1 at the levels above this one, as the table says.
 known_from_above() {
     jq -r --argjson entry "$1" --arg level "$level" '.[$entry.name] // {} | { A: [], B: [.A], C: [.A, .B] }[$level] | unique[] | select(. and test("^[-a-z0-9.]+$"))' \
@@ -150,7 +154,7 @@ summary() {
 export SOURCES="${SOURCES:-$(sources "$level")}" GATE_REFERENCE="$PWD/tools/once.sh $PWD/build/faults/reference $PWD/build/lammps-candidate --own reference"
 [ "${1:-}" = judge ] && { judge "$2"; exit; }
 count=$(jq '.faults | length' $list)
-rm -rf build/faults/reference && mkdir -p build/faults/reference
+rm -rf build/faults/reference build/faults/hashes && mkdir -p build/faults/reference build/faults/hashes
 restore
 before >build/faults/before.json
 reference
