@@ -119,15 +119,23 @@ EOF
 
 # The table: what each level has said of each entry; of levels that have no answer the old cells.
 assemble() {
-    for l in A B C; do sources "$l" >build/faults/sources-$l; done
-    for k in $(seq 0 $((count - 1))); do
-        entry=$(entry "$k")
-        for l in A B C; do
-            key=$(SOURCES=$(cat build/faults/sources-$l) && key "$entry")
-            said=build/faults/$l/$key.json
-            current "$said" && jq --arg key "$key" '. + { key: "\($key) \(.of)" }' "$said" || echo null
-        done | jq -cs --argjson entry "$entry" '$entry + { A: .[0], B: .[1], C: .[2] }'
-    done >build/faults/all.jsonl
+    jq -c '.faults[]' $list | python3 -c '
+import glob, hashlib, json, os, sys
+def hashed(data): return hashlib.sha1(data).hexdigest()[:16]
+cases = {}
+def of_case(name):          # as hash_of_case
+    if name not in cases:
+        files = sorted(glob.glob("validation/cases/*/%s/case.json" % (name or "*")), key=os.fsencode)
+        cases[name] = hashed(b"".join(open(f, "rb").read() for f in files))
+    return cases[name]
+for line in sys.stdin:
+    entry = json.loads(line)
+    for level, sources in zip("ABC", sys.argv[1:]):
+        key = hashed(("%s %s" % (sources, line.rstrip("\n"))).encode())
+        path = "build/faults/%s/%s.json" % (level, key)
+        said = json.load(open(path)) if os.path.exists(path) else {}
+        entry[level] = dict(said, key=key + " " + said["of"]) if said and said["of"] == of_case(said["case"]) else None
+    print(json.dumps(entry))' "$(sources A)" "$(sources B)" "$(sources C)" >build/faults/all.jsonl
     before >build/faults/before.json
     jq -rn --slurpfile old build/faults/before.json '
         def number: if . == "" then "" else tonumber? end;
