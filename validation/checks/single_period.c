@@ -9,7 +9,7 @@
  *
  * is 0 but for chance. If the noise has a period, stretches one period apart share half of their kicks or more, and C >= 1/2 there. All lags
  * that leave an eighth of the run to compare are tried; lag 1 and 2, through which inertia reaches, are not. Chance has the
- * standard deviation 1/sqrt(numbers compared), of which half of 1/2 must be ten.
+ * standard deviation 1/sqrt(numbers compared), of which half of 1/2 must be ten. A correlation that is no number (spheres that stand still) ends the search.
  */
 #include "single.h"
 
@@ -56,7 +56,7 @@ void check_noise_period(struct check_run *run)
         for (size_t n = 0; n < stretches; n++)
             for (size_t k = 0; k < width; k++)
                 d[n * width + k] = track_at(&track, n + 1, k / 3)->x[k % 3] - track_at(&track, n, k / 3)->x[k % 3];
-        for (size_t l = 3; l <= stretches - stretches / 8; l++) {
+        for (size_t l = 3; l <= stretches - stretches / 8 && isfinite(most); l++) {
             const double C = fabs(correlation(d, width, stretches, l));
             if (!(C <= most)) {
                 most = C;
