@@ -107,6 +107,21 @@ static void instants_by_hand(void)
     check_close(cell_of("pair_plane.csv", "2,0", "count"), 2, 0, "to the right: two pairs; their other ends lie to the left");
 }
 
+/* Two shears of one rate: both tables speak of the plane that comes first, x along y before x along z. One contact, along x and y. */
+static void tables_agree_about_the_plane(void)
+{
+    struct error e;
+    write_text(in_folder("two.csv"), "id,species,x,y,z,ux,uy,uz,wx,wy,wz\n1,1,1,1,1,0,0,0,0,0,0\n2,1,2.5,3,1,0,0,0,0,0,0\n");
+    check_true(run("{ \"about\": \"test\", \"seed\": 1, \"fluid\": { \"viscosity\": 0.7 }, " PARTS "\"start\": { \"file\": \"two.csv\" },\n"
+                   "\"shear\": [ { \"flow\": \"x\", \"gradient\": \"z\", \"rate\": 0.5 }, { \"flow\": \"x\", \"gradient\": \"y\", \"rate\": 0.5 } ],\n"
+                   "\"forces\": { \"contact\": { \"normal_stiffness\": 50, \"friction\": 0 } }, \"dynamics\": { \"verlet\": { \"dt\": 0.001 } }, \"run\": { \"steps\": 0 },\n"
+                   "\"output\": { \"stress\": { \"every\": 1 }, \"viscosity\": { \"every\": 1 } } }", &e), e.text);
+    /* Overlap 0.1, force 5 along (0.6, 0.8): sigma_xy = -5 * 2.5 * 0.6 * 0.8/V. */
+    const double eta_r = 1 - 5 * 2.5 * 0.6 * 0.8 / (7.1 * 9.3 * 8.7 * 0.7 * 0.5);
+    check_close(cell_of("stress.csv", "0", "eta_r"), eta_r, 1e-8, "stress.csv");
+    check_close(cell_of("viscosity.csv", "0", "eta_r"), eta_r, 1e-13, "viscosity.csv");
+}
+
 /* An ideal gas: g = 1 everywhere, also beyond half of a small cell, and with images counted. */
 static void ideal_gas_has_g_of_one(void)
 {
@@ -195,6 +210,7 @@ static void wrong_observers_are_named(void)
 
 static const struct unit_test tests[] = {
     { "instants by hand", instants_by_hand },
+    { "two shears of one rate", tables_agree_about_the_plane },
     { "an ideal gas has g of one", ideal_gas_has_g_of_one },
     { "free spheres diffuse", free_spheres_diffuse },
     { "wrong observers are named", wrong_observers_are_named },

@@ -1,7 +1,8 @@
 /*
  * The plane of shear and what is read off a stress in it
  *
- *     f flow, g gradient, v vorticity axis of the fastest shear, in stages of the first that is named (x, y, z at rest)
+ *     f flow, g gradient, v vorticity axis of the fastest shear (of equally fast ones the first of xy, xz, yx ...), in stages of the
+ *     first that is named (x, y, z at rest)
  *     shear  (sigma_fg + sigma_gf)/2     N1 = sigma_ff - sigma_gg     N2 = sigma_gg - sigma_vv     pressure = -tr/3
  *
  * The sum over origins leaves out the kinetic part (bookkept, not part of the model's viscosity) and the

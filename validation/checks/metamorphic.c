@@ -190,6 +190,31 @@ static bool try_doubled(struct check_run *run, const struct crowd *crowd, const 
     return answered;
 }
 
+/* The run that wrote stresses: spheres that begin in contact have not slid yet, so before the first step no spring pulls along the contact. */
+static void judge_start(struct check_run *run, const char *name)
+{
+    char path[PATH_LENGTH], out[PATH_LENGTH], why[WHY_LENGTH];
+    struct table t;
+    struct worst w = WORST_NONE;
+    double normal = 0.0;
+    path_join(out, run->work, name);
+    path_join(path, out, "out/stress.csv");
+    if (!table_read(path, "step,contact_normal_xx,contact_normal_yy,contact_normal_zz,contact_tangential_xx,contact_tangential_xy,contact_tangential_xz,"
+                          "contact_tangential_yx,contact_tangential_yy,contact_tangential_yz,contact_tangential_zx,contact_tangential_zy,contact_tangential_zz",
+                    &t, why)) {
+        check_skip(run, "nothing has slid at the start", "the candidate writes no stress.csv with tangential parts");
+        return;
+    }
+    for (size_t k = 1; t.rows > 0 && k < 4; k++)
+        normal = fmax(normal, fabs(table_at(&t, 0, k)));
+    for (size_t k = 0; t.rows > 0 && table_at(&t, 0, 0) == 0.0 && normal > 0.0 && k < 9; k++)
+        worst_see(&w, table_at(&t, 0, 4 + k), 0.0, normal, k);
+    table_free(&t);
+    if (w.error >= 0.0)
+        check_error(run, INVARIANT, "nothing has slid at the start", w.measured, w.expected, w.error, 1e-12, "before the first step the tangential stress of the contacts is "
+                    "%.3g of the normal one; nothing has moved yet, so no spring is stretched", w.error);
+}
+
 /* Second half from what was written at the middle: without friction nothing is remembered but the half-step velocity. */
 static bool try_split(struct check_run *run, const struct crowd *crowd)
 {
@@ -266,7 +291,9 @@ static bool prepare(struct check_run *run, struct crowd *crowd)
     crowd->count = (size_t)(kinds[0].count + kinds[1].count);
     crowd->rate = m.gradient[0][1];
     crowd->radius = m.radius[0];
-    crowd->dt = scene_number(crowd->scene, "dynamics.verlet.dt", NAN);
+    char step[96];
+    step_key(crowd->scene, step);
+    crowd->dt = scene_number(crowd->scene, step, NAN);
     crowd->steps = (int)scene_number(parameters, "steps", NAN);
     if (!place(run, crowd, kinds))
         return false;
@@ -325,6 +352,8 @@ static bool try_all(struct check_run *run, const struct crowd *crowd, const stru
             good &= try_scene(run, tries[k].name, tries[k].what, crowd, tries[k].scene, base, tries[k].tolerance);
     }
     good = good && (!wanted(run, "doubled") || try_doubled(run, crowd, base));
+    if (good && wanted(run, "watched") && scene_number(crowd->scene, "forces.contact.tangential_damping", 0.0) == 0.0)
+        judge_start(run, "watched");
     return good && (!wanted(run, "split") || try_split(run, crowd));
 }
 

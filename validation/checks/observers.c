@@ -58,7 +58,9 @@ void film_stress_columns(const struct film *f, const char *origin, char columns[
     }
 }
 
-/* All pairs of a frame, whose cell is that of its time. */
+static bool is_driven(const struct film *f, size_t i) { return f->m.driven[f->row[i].species - 1]; }
+
+/* All pairs of a frame, whose cell is that of its time; two driven spheres are no pair. */
 static bool find_pairs(struct film *f, size_t frame)
 {
     struct model now;
@@ -86,7 +88,7 @@ static bool find_pairs(struct film *f, size_t frame)
                         p.n[c] += (share[v] - round(share[v]) + step[v]) * now.cell[v][c];
                 p.distance = norm(p.n);
                 p.gap = p.distance - film_radius(f, i) - film_radius(f, j);
-                if (p.distance >= f->range)
+                if (p.distance >= f->range || (is_driven(f, i) && is_driven(f, j)))
                     continue;
                 for (int c = 0; c < 3; c++)
                     p.n[c] /= p.distance;
@@ -139,7 +141,7 @@ void film_temperatures(const struct film *f, size_t frame, int species, double T
     memset(T, 0, 6 * sizeof *T);
     for (size_t i = 0; i < f->count; i++) {
         double c[3], w[3];
-        if (species && f->row[i].species != species)
+        if ((species && f->row[i].species != species) || is_driven(f, i))
             continue;
         film_peculiar(f, track_at(&f->track, frame, i), c, w);
         of += 1.0;
@@ -148,8 +150,30 @@ void film_temperatures(const struct film *f, size_t frame, int species, double T
             T[3 + k] += 0.4 * mass(f, i) * gsl_pow_2(film_radius(f, i)) * w[k] * w[k];
         }
     }
-    for (int k = 0; k < 6; k++)
+    for (int k = 0; k < 6 && of > 0.0; k++)
         T[k] /= of;
+}
+
+/* A driven sphere, followed through the faces, goes straight on from where it began, whatever pulls at it. */
+static void judge_driven(const struct film *f)
+{
+    struct worst w = WORST_NONE;
+    for (size_t s = 0; s < f->frames; s++)
+        for (size_t i = 0; i < f->count; i++) {
+            const int kind = f->row[i].species - 1;
+            const struct track_point *p = track_at(&f->track, s, i);
+            double x[3];
+            for (int k = 0; k < 3 && is_driven(f, i); k++)
+                x[k] = f->row[i].x[k] + f->m.velocity[kind][k] * (double)s * f->every * f->dt;
+            if (is_driven(f, i)) {
+                worst_see_vector(&w, p->x, x, 3, film_radius(f, i), i);
+                worst_see_vector(&w, p->u, f->m.velocity[kind], 3, film_radius(f, i), i);
+                worst_see_vector(&w, p->w, f->m.spin[kind], 3, 1.0, i);
+            }
+        }
+    if (w.error >= 0.0)
+        check_error(f->run, MODEL, "driven spheres", w.measured, w.expected, w.error, f->run->gate_case->tolerance, "driven sphere %zu does not keep the motion that the "
+                    "scene gives it: place, velocity or spin is %s", w.at + 1, compare(&w));
 }
 
 static bool in_range(const struct film *f, const struct near_pair *p)
@@ -428,6 +452,7 @@ void check_observers(struct check_run *run)
     for (size_t s = 0; good && s < f.frames; s++)
         good = find_pairs(&f, s);
     if (good) {
+        judge_driven(&f);
         judge_temperature(&f);
         judge_contacts(&f);
         judge_viscosity(&f);

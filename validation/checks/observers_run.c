@@ -254,7 +254,8 @@ void film_judge_stress_table(const struct film *f)
     if (S && film_table(f, "stress.csv", "step,time,strain,eta_r", &t)) {
         for (size_t r = 0; r < rows && r < t.rows; r++) {
             worst_see(&strain, table_at(&t, r, 2), fabs(rate) * (table_at(&t, r, 1) - f->begin), 1.0, r);
-            worst_see(&eta, table_at(&t, r, 3), 1.0 + 0.5 * (S[r][3] + S[r][4]) / unit, 1.0, r);
+            const double expected = 1.0 + 0.5 * (S[r][3] + S[r][4]) / unit;
+            worst_see(&eta, table_at(&t, r, 3), expected, fmax(1.0, fabs(expected)), r);      /* nine digits are written */
         }
         table_free(&t);
         film_judge(f, "stress.csv: strain", &strain);

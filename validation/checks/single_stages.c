@@ -3,14 +3,16 @@
  *
  *     places, velocities and spins against theory/driven_sphere.c, extrapolated from dt, dt/2, dt/4 as two_bodies.c does
  *     stress of the drag = (5 phi) eta E(t), strain = the way travelled, at every single step
+ *     rate and shear stress in the plane of the first shear that the first stage names
  *
- * The second sees what vanishes with dt: a flow that turns one step too early or too late. Stages end on steps of the coarsest run; the very
- * steps at which a rate jumps are left out, for there both rates are right. Half of the spheres start with the flow and stay with it, half
+ * The second sees what vanishes with dt: a flow that turns one step too early or too late. Stages end on steps of the coarsest run; at the very
+ * steps at which a rate jumps the flow before and the flow after are right, and nothing else. Half of the spheres start with the flow and stay with it, half
  * are thrown, and all pass the faces of the cell, which the flow deforms there and back.
  */
 #include "single.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { SPHERES = 8, REFINED = 3, STAGES = 8 };
@@ -68,30 +70,51 @@ static void place(struct check_run *run, const struct model *m, const struct the
     gsl_rng_free(random);
 }
 
+/* The flow of a row: where rates jump, that of before or after, whichever is nearer to the `count` entries that the row says. */
+static void flow_of_row(const struct theory_stage *stage, size_t stages, double time, double dt, const double *said, size_t count, double unit, double G[3][3],
+                        double *way)
+{
+    double edge = 0.0, least = INFINITY, from = time, to = time;
+    for (size_t n = 0; n < stages; n++) {
+        edge += stage[n].duration;
+        if (fabs(time - edge) < 0.01 * dt)
+            from = edge - 1e-9 * dt, to = edge + 1e-9 * dt;
+    }
+    for (int side = 0; side < 2; side++) {
+        double flow[3][3], off = 0.0;
+        theory_driven_flow(stage, stages, side ? to : from, flow, way);
+        for (size_t k = 0; k < count; k++)
+            off += fabs(said[k] - unit * (flow[k / 3][k % 3] + flow[k % 3][k / 3]));
+        if (off < least) {
+            least = off;
+            memcpy(G, flow, sizeof flow);
+        }
+    }
+}
+
 /* Drag's stress and the strain of every row against the flow of that moment. False after recording that it cannot be read. */
 static bool judge_flow(struct check_run *run, const char *drive, const char *name, const struct model *m, const struct theory_stage *stage, size_t stages,
                        double dt)
 {
     char path[PATH_LENGTH], out[PATH_LENGTH], why[WHY_LENGTH], what[96];
     struct table t;
-    struct worst stress = WORST_NONE, strain = WORST_NONE;
+    struct worst stress = WORST_NONE, strain = WORST_NONE, plane = WORST_NONE;
     path_join(out, run->work, name);
     path_join(path, out, "out/stress.csv");
     if (!table_read(path, "time,strain,drag_xx,drag_xy,drag_xz,drag_yx,drag_yy,drag_yz,drag_zx,drag_zy,drag_zz", &t, why)) {
         check_garbage(run, why);
         return false;
     }
-    const double phi = SPHERES * 4.0 / 3.0 * M_PI * gsl_pow_3(m->radius[0]) / m->volume;
+    const double phi = SPHERES * 4.0 / 3.0 * M_PI * gsl_pow_3(m->radius[0]) / m->volume, unit = 2.5 * phi * m->viscosity;
+    double (*flow)[3][3] = calloc(t.rows + 1, sizeof *flow);
     for (size_t r = 0; r < t.rows; r++) {
-        const double time = table_at(&t, r, 0);
-        double G[3][3], way, edge = 0.0;
-        bool jumps = false;
-        theory_driven_flow(stage, stages, time, G, &way);
-        for (size_t n = 0; n < stages; n++)
-            jumps = jumps || fabs(time - (edge += stage[n].duration)) < 0.01 * dt;
+        double said[9], way;
+        for (size_t k = 0; k < 9; k++)
+            said[k] = table_at(&t, r, 2 + k);
+        flow_of_row(stage, stages, table_at(&t, r, 0), dt, said, 9, unit, flow[r], &way);
         worst_see(&strain, table_at(&t, r, 1), way, 1.0, r);
-        for (size_t k = 0; k < 9 && !jumps; k++)
-            worst_see(&stress, table_at(&t, r, 2 + k), 2.5 * phi * m->viscosity * (G[k / 3][k % 3] + G[k % 3][k / 3]), phi * m->viscosity, r);
+        for (size_t k = 0; k < 9; k++)
+            worst_see(&stress, said[k], unit * (flow[r][k / 3][k % 3] + flow[r][k % 3][k / 3]), phi * m->viscosity, r);
     }
     const double rounding = 1e-10, pieces = 1e-5;      /* the way is added up in pieces */
     snprintf(what, sizeof what, "%s: stress of the drag", drive);
@@ -100,7 +123,25 @@ static bool judge_flow(struct check_run *run, const char *drive, const char *nam
     snprintf(what, sizeof what, "%s: strain", drive);
     check_error(run, MODEL, what, strain.measured, strain.expected, strain.error, pieces, "at row %zu (time %g) the way travelled is %s", strain.at,
                 table_at(&t, strain.at, 0), compare(&strain));
+    const size_t rows = t.rows;
     table_free(&t);
+    path_join(path, out, "out/viscosity.csv");
+    snprintf(what, sizeof what, "%s: rate and stress in the plane", drive);
+    if (!table_read(path, "rate,shear_drag,shear", &t, why))
+        check_skip(run, what, "the candidate writes no viscosity.csv");
+    else {
+        const struct theory_rate *first = &stage[0].shear[0];
+        for (size_t r = 0; r < t.rows && r < rows; r++) {
+            const double rate = flow[r][first->flow][first->gradient], shear = unit * (rate + flow[r][first->gradient][first->flow]);
+            worst_see(&plane, table_at(&t, r, 0), rate, 1.0, r);
+            worst_see(&plane, table_at(&t, r, 1), shear, phi * m->viscosity, r);
+            worst_see(&plane, table_at(&t, r, 2), shear, phi * m->viscosity, r);
+        }
+        table_free(&t);
+        check_error(run, MODEL, what, plane.measured, plane.expected, plane.error, rounding, "at row %zu the rate or the shear stress of viscosity.csv is %s; tables "
+                    "speak of the plane of the shear that is named first", plane.at, compare(&plane));
+    }
+    free(flow);
     return true;
 }
 
@@ -160,6 +201,7 @@ static bool try_drive(struct check_run *run, const json_t *drive, size_t number)
         snprintf(name, sizeof name, "drive-%zu-dt-%d", number, 1 << r);
         scene_set(scene, "dynamics.verlet.dt", json_real(ldexp(o.dt, -r)));
         scene_set(scene, "output.stress", json_pack("{si}", "every", 1));
+        scene_set(scene, "output.viscosity", json_pack("{si}", "every", 1));
         good = track_ask(run, name, scene, start, SPHERES, at, steps, &track[r]) && (r || judge_flow(run, label, name, &m, stage, stages, o.dt));
     }
     for (size_t k = 0; k < steps; k++)
@@ -181,6 +223,74 @@ static bool try_drive(struct check_run *run, const json_t *drive, size_t number)
     return good;
 }
 
+/* How far the flow itself turns a sphere until a time: the integral of half its vorticity, in closed form. */
+static void turned_by(const struct theory_stage *stage, size_t stages, double t, double turn[3])
+{
+    double S[3][3] = { { 0 } };
+    for (size_t n = 0; n < stages && t > 0.0; t -= stage[n++].duration)
+        for (size_t k = 0; k < stage[n].shears; k++) {
+            const struct theory_rate *r = &stage[n].shear[k];
+            const double s = fmin(t, stage[n].duration);
+            S[r->flow][r->gradient] += r->mean * s + 0.5 * r->slope * s * s;
+            if (r->amplitude != 0.0)
+                S[r->flow][r->gradient] += r->amplitude / r->frequency * (cos(r->phase) - cos(r->frequency * s + r->phase));
+        }
+    for (int k = 0; k < 3; k++)
+        turn[k] = 0.5 * (S[(k + 2) % 3][(k + 1) % 3] - S[(k + 1) % 3][(k + 2) % 3]);
+}
+
+/* A run that begins in the middle, its samples, and the table that it wrote. */
+struct late { const char *label; const struct theory_stage *stage; size_t stages; double begin, every; const struct track *track; const struct table *displacement; };
+enum { LATE_FRAMES = 49 };
+
+/* Mean square of the angle beyond that of the flow, from the angles of the trajectory; lags up to 16 samples, whose origins are all samples. */
+static void judge_turn(struct check_run *run, const struct late *l)
+{
+    double flow[LATE_FRAMES][3], expected[17][3] = { { 0 } }, largest = 0.0;
+    struct worst w = WORST_NONE;
+    char what[96];
+    snprintf(what, sizeof what, "%s: angle beyond the flow's", l->label);
+    for (size_t s = 0; s < LATE_FRAMES; s++)
+        turned_by(l->stage, l->stages, l->begin + (double)s * l->every, flow[s]);
+    for (size_t lag = 1; lag <= 16; lag++)
+        for (size_t k = 0; k < 3; k++) {
+            double sum = 0.0, n = 0.0;
+            for (size_t s = 0; s + lag < LATE_FRAMES; s++)
+                for (size_t i = 0; i < SPHERES; i++, n += 1.0)
+                    sum += gsl_pow_2(track_at(l->track, s + lag, i)->turn[k] - track_at(l->track, s, i)->turn[k] - flow[s + lag][k] + flow[s][k]);
+            expected[lag][k] = sum / n;
+            largest = fmax(largest, sum / n);
+        }
+    for (size_t r = 0; r < l->displacement->rows; r++) {
+        const size_t lag = (size_t)lround(table_at(l->displacement, r, 0) / l->every);
+        for (size_t k = 0; lag >= 1 && lag <= 16 && k < 3; k++)
+            worst_see(&w, table_at(l->displacement, r, 4 + k), expected[lag][k], largest, r);
+    }
+    check_error(run, MODEL, what, w.measured, w.expected, w.error, 1e-8, "row %zu of displacement.csv says a mean square angle of %s; the angles of its trajectory without "
+                "the integral of the flow's rate of turning give that", w.at + 1, compare(&w));      /* sums of the same 17 digits */
+}
+
+/* Spheres that follow the flow have no displacement of their own; their spins follow it with delay, so there is an angle. */
+static void judge_late_displacement(struct check_run *run, struct late *l, const char *path, double radius)
+{
+    struct worst own = WORST_NONE;
+    struct table t;
+    char what[96], why[WHY_LENGTH];
+    snprintf(what, sizeof what, "%s: displacement beyond the flow's", l->label);
+    if (!table_read(path, "lag,msd_x,msd_y,msd_z,turn_x,turn_y,turn_z", &t, why)) {
+        check_skip(run, what, "the candidate writes no displacement.csv");
+        return;
+    }
+    for (size_t r = 0; r < t.rows; r++)
+        for (size_t c = 1; c < 4; c++)
+            worst_see(&own, table_at(&t, r, c), 0.0, gsl_pow_2(radius), r);
+    check_error(run, MODEL, what, own.measured, own.expected, own.error, 1e-4, "spheres that follow the flow have a mean square displacement of %.3g of "
+                "their own: what the flow does to the old place is not taken off as it should be", own.measured);
+    l->displacement = &t;
+    judge_turn(run, l);
+    table_free(&t);
+}
+
 /*
  * A run that begins in the middle: strain counts from its begin, and spheres that follow the flow have no displacement of their own, for the
  * deformation from one moment to another is that of the rates between them.
@@ -192,17 +302,20 @@ static void try_late(struct check_run *run, const json_t *drive, size_t number)
     json_t *scene = variant_scene(run->gate_case, drive);
     struct theory_stage stage[STAGES];
     struct state_row start[SPHERES];
-    struct worst strain = WORST_NONE, own = WORST_NONE;
+    struct worst strain = WORST_NONE;
     struct model m;
     struct table t;
     struct track track;
     char name[64], out[PATH_LENGTH], path[PATH_LENGTH], why[WHY_LENGTH], what[96];
-    const int at = (int)(1.2 / dt);
+    const int every = (int)lround(1.2 / dt) / (LATE_FRAMES - 1);
+    int at[LATE_FRAMES];
     double G[3][3], way[2];
+    for (int s = 0; s < LATE_FRAMES; s++)
+        at[s] = s * every;
     scene_set(scene, "stages", json_incref(json_object_get(drive, "stages")));
     scene_set(scene, "start.time", json_real(begin));
     scene_set(scene, "output.stress", json_pack("{si}", "every", 1));
-    scene_set(scene, "output.displacement", json_pack("{si si}", "every", 5, "levels", 3));
+    scene_set(scene, "output.displacement", json_pack("{si si}", "every", every, "levels", 3));
     const size_t stages = read_stages(json_object_get(drive, "stages"), stage);
     theory_driven_flow(stage, stages, begin, G, &way[0]);
     if (model_read(run, scene, &m))
@@ -211,8 +324,7 @@ static void try_late(struct check_run *run, const json_t *drive, size_t number)
         apply(G, start[i].x, start[i].u);
     snprintf(name, sizeof name, "late-%zu", number);
     snprintf(what, sizeof what, "%s: strain from the middle on", label);
-    if (track_ask(run, name, scene, start, SPHERES, &at, 1, &track)) {
-        track_free(&track);
+    if (track_ask(run, name, scene, start, SPHERES, at, LATE_FRAMES, &track)) {
         path_join(out, run->work, name);
         path_join(path, out, "out/stress.csv");
         if (table_read(path, "time,strain", &t, why)) {
@@ -226,17 +338,9 @@ static void try_late(struct check_run *run, const json_t *drive, size_t number)
         } else
             check_garbage(run, why);
         path_join(path, out, "out/displacement.csv");
-        snprintf(what, sizeof what, "%s: displacement beyond the flow's", label);
-        if (!table_read(path, "lag,msd_x,msd_y,msd_z", &t, why))
-            check_skip(run, what, "the candidate writes no displacement.csv");
-        else {
-            for (size_t r = 0; r < t.rows; r++)
-                for (size_t c = 1; c < 4; c++)
-                    worst_see(&own, table_at(&t, r, c), 0.0, gsl_pow_2(m.radius[0]), r);
-            table_free(&t);
-            check_error(run, MODEL, what, own.measured, own.expected, own.error, 1e-4, "spheres that follow the flow have a mean square displacement of %.3g of "
-                        "their own: what the flow does to the old place is not taken off as it should be", own.measured);
-        }
+        struct late l = { label, stage, stages, begin, every * dt, &track, NULL };
+        judge_late_displacement(run, &l, path, m.radius[0]);
+        track_free(&track);
     }
     json_decref(scene);
 }

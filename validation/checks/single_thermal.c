@@ -5,7 +5,8 @@
  *
  * `start.thermal` adds Maxwell's velocities and spins to those of the file, which here are the flow's own. Looked at before anything has moved:
  * thousands of spheres in shear, temperature and sizes far from 1, where a missing root or mass is an obvious factor. Numbers of different spheres,
- * axes, and of velocity and spin are independent: their mean products vanish.
+ * axes, and of velocity and spin are independent: their mean products vanish. So does the product of a velocity and the noise of the first step,
+ * c(dt) - c(0) (1 - gamma dt): who draws both from one stream starts with spheres that are kicked onward.
  */
 #include "single.h"
 
@@ -32,7 +33,7 @@ void check_thermal(struct check_run *run)
 {
     const size_t count = (size_t)scene_number(run->gate_case->parameters, "spheres", 0);
     json_t *scene = json_deep_copy(run->gate_case->scene);
-    const double kT = scene_number(scene, "fluid.kT", NAN);
+    const double kT = scene_number(scene, "fluid.kT", NAN), dt = scene_number(scene, "dynamics.verlet.dt", NAN);
     struct model m;
     struct track track;
     const int at[2] = { 0, 1 };
@@ -54,7 +55,7 @@ void check_thermal(struct check_run *run)
     scene_set(scene, "start.thermal", json_true());
     scene_set(scene, "seed", json_integer(run->seed));
     if (row && track_ask(run, "start", scene, row, count, at, 2, &track)) {
-        struct average T[2] = { { 0 } }, W[2] = { { 0 } }, neighbours = { 0 }, axes = { 0 }, both = { 0 };
+        struct average T[2] = { { 0 } }, W[2] = { { 0 } }, neighbours = { 0 }, axes = { 0 }, both = { 0 }, kicks = { 0 };
         double before[6] = { 0 };
         for (size_t i = 0; i < count; i++) {
             const struct track_point *p = track_at(&track, 0, i);
@@ -75,6 +76,14 @@ void check_thermal(struct check_run *run)
                 average_see(&both, z[k] * z[3 + k]);
             }
             memcpy(before, z, sizeof z);
+            const struct track_point *next = track_at(&track, 1, i);
+            const double friction[2] = { 6 * M_PI * m.viscosity * a / mass, 8 * M_PI * m.viscosity * a * a * a / inertia };
+            double flow[3];
+            apply(m.gradient, next->x, flow);
+            for (int k = 0; k < 6; k++) {
+                const double after = k < 3 ? (next->u[k] - flow[k]) * sqrt(mass / kT) : (next->w[k - 3] - row[i].w[k - 3]) * sqrt(inertia / kT);
+                average_see(&kicks, z[k] * (after - z[k] * (1.0 - friction[k / 3] * dt)) / sqrt(2.0 * friction[k / 3] * dt));
+            }
         }
         judge(run, "small: translation", &T[0], 1.0, 0.1, "the kinetic temperature over kT");
         judge(run, "large: translation", &T[1], 1.0, 0.1, "the kinetic temperature over kT");
@@ -82,6 +91,7 @@ void check_thermal(struct check_run *run)
         judge(run, "large: rotation", &W[1], 1.0, 0.1, "the kinetic temperature over kT");
         judge(run, "different spheres", &neighbours, 0.0, 0.06, "the correlation of sphere i with sphere i + 1");
         judge(run, "different axes", &axes, 0.0, 0.06, "the correlation of one axis with the next");
+        judge(run, "start and first kick", &kicks, 0.0, 0.06, "the correlation of a velocity or spin with the noise of the first step");
         judge(run, "velocity and spin", &both, 0.0, 0.06, "the correlation of velocity and spin");
         track_free(&track);
     }
