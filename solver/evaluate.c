@@ -65,7 +65,7 @@ static void contacts_place(const struct contacts *c, int state, struct suspensio
 /* The scene's particles replaced by one configuration of the file. */
 static bool place(struct suspension *s, const struct state_file *states, int state, struct error *e)
 {
-    return state_file_place(states, state, s, e) && neighbours_start(&s->neighbours, &s->box, &s->particles, e);
+    return state_file_place(states, state, s, e) && neighbours_start(&s->neighbours, &s->particles, e);
 }
 
 /* Forces and torques of one force alone are in the particles' arrays afterwards; the stress is added to. */

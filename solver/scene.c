@@ -122,7 +122,7 @@ static bool build(struct settings *root, const char *path, const struct scene_op
     return build_fluid(root, s, e) && build_key(root, s, e) && build_box(root, s, e) && build_species(root, &s->particles, e) &&
            build_forces(root, s, e) && dynamics_choose(root, s, &sim->dynamics, &chosen, e) && suspension_start(root, path, options->states, s, e) &&
            step_choose(&chosen, s, e) && (options->frozen || (run_build(root, sim, e) && outputs_build(root, sim, e))) &&
-           settings_done(root, e) && (options->states || neighbours_start(&s->neighbours, &s->box, &s->particles, e));
+           settings_done(root, e) && (options->states || neighbours_start(&s->neighbours, &s->particles, e));
 }
 
 bool scene_build(const char *path, const struct scene_options *options, struct simulation *sim, struct error *e)

@@ -42,14 +42,14 @@ static void crowd(struct particles *p, int count, const struct box *b)
     }
 }
 
-static void search_for(struct neighbours *n, const struct box *b, const struct particles *p, double factor)
+static void search_for(struct neighbours *n, const struct particles *p, double factor)
 {
     struct error e = { 0 };
     memset(n, 0, sizeof *n);
     for (int a = 0; a < 2; a++)
         for (int c = 0; c < 2; c++)
             n->range[a][c] = factor * (p->kind[a].radius + p->kind[c].radius);
-    check_true(neighbours_start(n, b, p, &e), e.text);
+    check_true(neighbours_start(n, p, &e), e.text);
 }
 
 /* Number of pairs within range and the sum of their normals' second moments, over all images within a generous span. */
@@ -82,7 +82,7 @@ static void finds_every_pair(double x, double y, double z, int count, double fac
     struct error e = { 0 };
     bool relisted;
     crowd(&p, count, &b);
-    search_for(&n, &b, &p, factor);
+    search_for(&n, &p, factor);
     for (int step = 0; step < 12; step++) {
         check_true(neighbours_find(&n, &b, &p, &relisted, &e), e.text);
         double expected, moment = 0.0;
@@ -192,7 +192,7 @@ static void history_survives_remap(void)
     crowd(&p, 2, &b);
     p.species[0] = p.species[1] = 0;
     vec3 where[2] = { vec(2.9, 5.8, 1.0), vec(2.9, 6.7, 1.0) };     /* unwrapped; touching across the y face */
-    search_for(&n, &b, &p, 1.3);
+    search_for(&n, &p, 1.3);
     n.keeps_history = true;
     for (int step = 0; step < 60; step++) {                         /* the pair moves as one, through faces and remaps */
         for (int i = 0; i < 2; i++) {
@@ -230,7 +230,7 @@ static void lost_particles_are_named(void)
     bool relisted;
     crowd(&p, 3, &b);
     p.position[1].y = NAN;
-    search_for(&n, &b, &p, 1.0);
+    search_for(&n, &p, 1.0);
     check_true(!neighbours_find(&n, &b, &p, &relisted, &e) && strstr(e.text, "particle 2"), "NaN names the particle");
     struct error same = { 0 };
     p.position[1] = p.position[0];
@@ -275,13 +275,13 @@ static void bodies_and_open_sides(void)
     p.position[1] = vec(3.9, 0.1, 2.0);         /* neighbour of 0 through the x face */
     p.position[2] = vec(0.1, 3.9, 2.0);         /* no neighbour of 0: y is open */
     p.position[3] = vec(0.1, 4.6, 2.0);         /* outside the cell, near 2 */
-    search_for(&n, &b, &p, 1.0);
+    search_for(&n, &p, 1.0);
     check_true(neighbours_find(&n, &b, &p, &relisted, &e), e.text);
     check_close(n.near.count, 2, 0, "pairs 0-1 and 2-3");
     p.body = malloc(4 * sizeof *p.body);
     p.body[0] = p.body[1] = 7;
     p.body[2] = p.body[3] = -1;
-    check_true(neighbours_start(&n, &b, &p, &e) && neighbours_find(&n, &b, &p, &relisted, &e), e.text);
+    check_true(neighbours_start(&n, &p, &e) && neighbours_find(&n, &b, &p, &relisted, &e), e.text);
     check_close(n.near.count, 1, 0, "only 2-3 once 0 and 1 are one body");
     neighbours_free(&n);
     particles_free(&p);

@@ -208,6 +208,20 @@ static void other_integrators_go_on(void)
     }
 }
 
+/* Without forces between pairs particles are put back into the cell every hundredth step only; a checkpoint just before must not do it. */
+static void runs_without_pairs_go_on(void)
+{
+    static const char *const set[] = { "forces={\"drag\":{\"torque\":true},\"drag_noise\":{\"distribution\":\"gaussian\"}}",
+                                       "dynamics={\"verlet\":{\"dt\":2e-2}}", "output={\"checkpoint\":{\"every\":1000},\"states\":{\"every\":5}}", "shear=[]", "fluid.kT=5", "run.steps=200" };
+    const char *cut[] = { set[0], set[1], set[2], set[3], set[4], "run.steps=98" };
+    struct error e;
+    const struct scene_options all = { .set = set, .set_count = 6 }, part = { .set = cut, .set_count = 6 }, rest = { .set = set, .set_count = 6, .resume = true };
+    make_folder();
+    check_true(run_as(&all, in_folder("alone"), &e) == 0, e.text);
+    check_true(run_as(&part, in_folder("alone-split"), &e) == 0 && run_as(&rest, in_folder("alone-split"), &e) == 0, e.text);
+    check_same_file(in_folder("alone"), in_folder("alone-split"), "trajectory.csv", "without pairs");
+}
+
 static void interrupted_runs_go_on(void)
 {
     struct error e;
@@ -308,6 +322,7 @@ static const struct unit_test tests[] = {
     { "a run in stages goes on", staged_runs_go_on },
     { "a run at rest goes on", runs_at_rest_go_on },
     { "runs of the other integrators go on", other_integrators_go_on },
+    { "a run without pairs goes on", runs_without_pairs_go_on },
     { "interrupted runs go on", interrupted_runs_go_on },
     { "killed runs go on", killed_runs_go_on },
     { "doubtful checkpoints are refused", doubtful_checkpoints_are_refused },

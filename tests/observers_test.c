@@ -107,6 +107,39 @@ static void instants_by_hand(void)
     check_close(cell_of("pair_plane.csv", "2,0", "count"), 2, 0, "to the right: two pairs; their other ends lie to the left");
 }
 
+/* Centres that lie in a plane: g = 1 for an ideal gas in rings and in squares; the viscosity is that of the one plane. */
+static void ideal_gas_in_a_plane(void)
+{
+    struct error e;
+    FILE *gas = fopen(in_folder("gas.csv"), "w");
+    uint32_t state = 12345;
+    fputs("id,species,x,y,z,ux,uy,uz,wx,wy,wz\n", gas);
+    for (int i = 1; i <= 400; i++) {
+        double at[2];
+        for (int k = 0; k < 2; k++) {
+            state = state * 1664525u + 1013904223u;
+            at[k] = 20.0 * (double)(state >> 8) / 16777216.0;
+        }
+        fprintf(gas, "%d,1,%.6f,%.6f,0,0,0,0,0,0,0\n", i, at[0], at[1]);
+    }
+    fclose(gas);
+    check_true(run("{ \"about\": \"test\", \"dimensions\": 2, \"seed\": 1, \"fluid\": { \"viscosity\": 0.7, \"kT\": 0.31 }, \"start\": { \"file\": \"gas.csv\" },\n"
+                   "\"species\": [ { \"name\": \"a\", \"radius\": 0.001, \"density\": 1 } ], \"box\": { \"lengths\": [20, 20, 4], \"periodic\": [true, true, true] },\n"
+                   "\"forces\": {}, \"dynamics\": { \"verlet\": { \"dt\": 0.001, \"rotation\": \"off\" } }, \"run\": { \"steps\": 0 },\n"
+                   "\"output\": { \"pair_distribution\": { \"every\": 1, \"range\": 6, \"bins\": 2, \"plane\": { \"range\": 4, \"half_width\": 0.5, \"bins\": 2 } } } }", &e), e.text);
+    /* 79800 pairs, of which pi 9/400 in the first ring: 5640, and pi 27/400: 16920 in the second; g to 5/sqrt(5640). */
+    check_close(cell_of("pair_distribution.csv", "far,1,1,0", "g"), 1, 0.07, "first ring");
+    check_close(cell_of("pair_distribution.csv", "far,1,1,3", "g"), 1, 0.07, "second ring");
+    check_close(cell_of("pair_plane.csv", "2,2", "g"), 1, 0.07, "a square of the plane");
+    write_text(in_folder("flat.csv"), "id,species,x,y,z,ux,uy,uz,wx,wy,wz\n1,1,1,1,0,0,0,0,0,0,0\n2,1,2.57,3.09,0,0,0,0,0,0,0\n");
+    check_true(run("{ \"about\": \"test\", \"dimensions\": 2, \"seed\": 1, \"fluid\": { \"viscosity\": 0.7, \"kT\": 0.31 }, " PARTS "\"start\": { \"file\": \"flat.csv\" },\n"
+                   "\"forces\": { \"contact\": { \"normal_stiffness\": 50, \"friction\": 0 } }, \"dynamics\": { \"verlet\": { \"dt\": 0.001 } }, \"run\": { \"steps\": 1 },\n"
+                   "\"output\": { \"green_kubo\": { \"every\": 1, \"levels\": 1 } } }", &e), e.text);
+    const double C = cell_of("green_kubo.csv", "0", "C_xy");
+    check_true(C > 0, "a stress along xy");
+    check_relative(cell_of("green_kubo.csv", "0.001", "eta"), 7.1 * 9.3 * 8.7 / 0.31 * 0.5 * (C + cell_of("green_kubo.csv", "0.001", "C_xy")) * 0.001, 1e-12, "trapezoid over xy alone");
+}
+
 /* Two shears of one rate: both tables speak of the plane that comes first, x along y before x along z. One contact, along x and y. */
 static void tables_agree_about_the_plane(void)
 {
@@ -211,6 +244,7 @@ static void wrong_observers_are_named(void)
 static const struct unit_test tests[] = {
     { "instants by hand", instants_by_hand },
     { "two shears of one rate", tables_agree_about_the_plane },
+    { "an ideal gas in a plane", ideal_gas_in_a_plane },
     { "an ideal gas has g of one", ideal_gas_has_g_of_one },
     { "free spheres diffuse", free_spheres_diffuse },
     { "wrong observers are named", wrong_observers_are_named },

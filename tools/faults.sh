@@ -2,7 +2,7 @@
 # Puts each fault of validation/faults/faults.json into a copy of the solver, builds it, and lets the fast tier judge it, quick cases first,
 # until one fails. Fails if a fault passes, or an equivalent change does not.
 #
-#     make faults [ONLY=word] [JOBS=2] [LEVEL=A]
+#     make faults [ONLY=word] [JOBS=2] [LEVEL=A] [LIST=validation/faults/faults.json] [TABLE=docs/measured/faults.csv]
 #
 # Seconds are those of one core, of the gate and the candidate; LAMMPS, the reference, answers each question once for all.
 # At levels B and C the cases that caught the fault at the levels above are asked first, then all in their order. The table of all entries is docs/measured/faults.csv. Its `key`s are two hashes: of
@@ -10,8 +10,8 @@
 # another clone; other cells stay as they were.
 set -eu
 cd "$(dirname "$0")/.."
-list=validation/faults/faults.json
-table=docs/measured/faults.csv
+list=${LIST:-validation/faults/faults.json}
+table=${TABLE:-docs/measured/faults.csv}
 level=${LEVEL:-A}
 jobs=${JOBS:-$(nproc)}
 kept=build/faults/$level

@@ -1,23 +1,20 @@
 #include "core/neighbours.h"
 #include "core/history.h"
+#include "core/images.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-bool neighbours_start(struct neighbours *n, const struct box *box, const struct particles *p, struct error *e)
+bool neighbours_start(struct neighbours *n, const struct particles *p, struct error *e)
 {
     double smallest = INFINITY;
-    n->count = 0;
-    n->made = n->steps_since = 0;
-    n->many_images = false;
+    n->count = 0, n->made = n->steps_since = 0;
     for (int a = 0; a < p->species_count; a++) {
         smallest = fmin(smallest, p->kind[a].radius);
         for (int b = 0; b < p->species_count; b++)
             n->largest_range = fmax(n->largest_range, n->range[a][b]);
     }
     n->skin = 0.1 * smallest;
-    for (int k = 0; k < 3; k++)
-        n->many_images = n->many_images || (box->periodic[k] && box->start.m[k][k] < 2.0 * n->largest_range);
     free(n->listed_at);
     n->listed_at = malloc(((size_t)p->count + 1) * sizeof *n->listed_at);
     return n->listed_at || error_out_of_memory(e);
@@ -67,6 +64,9 @@ static bool grid_new(struct grid *g, const struct box *box, const struct particl
         /* An open direction sees no images, so its own cells and the next are enough even where they are few. */
         g->reach[k] = box->periodic[k] ? (int)ceil(distance * g->cells[k] / box_width(box, k)) : 1;
         g->span[k] = box->periodic[k] ? (g->reach[k] + g->cells[k] - 1) / g->cells[k] : 0;      /* farthest image seen */
+        if (box->periodic[k] && !(distance < MOST_IMAGES * box_width(box, k)))
+            return error_raise(e, ERROR_RUN, "at time %.9g the cell is %g thin, too thin for a range of %g; it stays compact in shear if the edge "
+                               "along each flow lies along its axis", box->time, box_width(box, k), distance);
         total *= (size_t)g->cells[k];
     }
     g->first = malloc(total * sizeof *g->first);
@@ -229,7 +229,6 @@ static bool make_list(struct neighbours *n, struct box *box, struct particles *p
 }
 
 /* ---- each step ---- */
-
 bool neighbours_find(struct neighbours *n, struct box *box, struct particles *p, bool *relisted, struct error *e)
 {
     struct near_pairs *near = &n->near;
@@ -244,6 +243,7 @@ bool neighbours_find(struct neighbours *n, struct box *box, struct particles *p,
     n->steps_since++;
     if (box->flowing)
         offsets_move(n, box);
+    n->many_images = images_meet(box, 2.0 * n->largest_range);      /* farther apart, only one can be within range */
     for (int k = 0; k < n->count; k++) {
         const struct candidate *c = &n->candidate[k];
         const struct image_offset *offset = &n->offset[c->offset];

@@ -25,7 +25,7 @@ struct neighbours {
     double largest_range;
     double skin;                    /* [L]; grows where lists are short-lived and shrinks where they last */
     bool keeps_history, foreign;    /* foreign: another program makes the list and wraps particles; it is only looked through */
-    bool many_images;               /* an edge is below twice the range: pairs may see several images */
+    bool many_images;               /* some vector of the lattice is so short that a pair may see several images */
     struct candidate *candidate;
     vec3 *history;                  /* one per candidate; NULL unless a force asked */
     int count, room;
@@ -38,7 +38,7 @@ struct neighbours {
 };
 
 /* Ready for these particles; `range` is set. May be called again for others. */
-bool neighbours_start(struct neighbours *n, const struct box *box, const struct particles *p, struct error *e);
+bool neighbours_start(struct neighbours *n, const struct particles *p, struct error *e);
 void neighbours_free(struct neighbours *n);
 
 /* Fills n->near for the present positions; remaps, wraps and makes a new list first where needed. `*relisted` says so. */

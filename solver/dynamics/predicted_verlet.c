@@ -69,7 +69,7 @@ static bool predicted_step(const struct dynamics *self, struct suspension *s, bo
     struct half_step *half = s->dynamics_state;
     struct particles *p = &s->particles;
     (void)self;
-    kick(s, 0.5 * s->dt);
+    kick(s, 0.5 * s->dt, 0.5 * s->dt);
     drift(s, s->dt);
     s->step++;
     box_set_time(&s->box, s->start_time + (double)s->step * s->dt);
@@ -80,7 +80,7 @@ static bool predicted_step(const struct dynamics *self, struct suspension *s, bo
         if (p->spin)
             half->spin[i] = p->spin[i];
     }
-    kick(s, 0.5 * s->dt);                                   /* predicts, with the old forces */
+    kick(s, 0.5 * s->dt, 0.0);                              /* predicts, with the old forces */
     predict_images(s);
     struct moment now = moment_of(s, s->dt);
     now.drift_velocity = half->velocity;
@@ -91,7 +91,7 @@ static bool predicted_step(const struct dynamics *self, struct suspension *s, bo
         if (p->spin)
             p->spin[i] = half->spin[i];
     }
-    kick(s, 0.5 * s->dt);
+    kick(s, 0.5 * s->dt, 0.0);
     return true;
 }
 

@@ -101,7 +101,7 @@ static bool split_step(const struct dynamics *self, struct suspension *s, bool *
 {
     struct split_state *own = s->dynamics_state;
     bool halfway;
-    kick(s, 0.5 * s->dt);
+    kick(s, 0.5 * s->dt, 0.5 * s->dt);
     drift(s, 0.5 * s->dt);
     s->step++;
     box_set_time(&s->box, s->start_time + ((double)s->step - 0.5) * s->dt);
@@ -117,7 +117,7 @@ static bool split_step(const struct dynamics *self, struct suspension *s, bool *
     now.drift_velocity = own->mean_velocity;
     now.drift_spin = own->mean_spin;
     suspension_add_forces(s, POTENTIAL, &now);
-    kick(s, 0.5 * s->dt);
+    kick(s, 0.5 * s->dt, 0.0);
     return true;
 }
 

@@ -21,7 +21,7 @@
 static bool verlet_step(const struct dynamics *self, struct suspension *s, bool *relisted, struct error *e)
 {
     (void)self;
-    kick(s, 0.5 * s->dt);
+    kick(s, 0.5 * s->dt, 0.5 * s->dt);
     drift(s, s->dt);
     s->step++;
     box_set_time(&s->box, s->start_time + (double)s->step * s->dt);
@@ -29,7 +29,7 @@ static bool verlet_step(const struct dynamics *self, struct suspension *s, bool 
         return false;
     const struct moment now = moment_of(s, s->dt);
     suspension_add_forces(s, ALL_KINDS, &now);
-    kick(s, 0.5 * s->dt);
+    kick(s, 0.5 * s->dt, 0.0);
     return true;
 }
 

@@ -23,6 +23,7 @@ struct lubrication_noise {
     double kT;
     enum noise_law law;
     struct noise_key key;
+    bool flat;              /* two dimensions: no force across the plane, which would be taken off the spheres but not off the stress */
 };
 
 static void lubrication_noise_add(const struct force *self, struct particles *p, struct near_pairs *near, const struct moment *now,
@@ -37,7 +38,7 @@ static void lubrication_noise_add(const struct force *self, struct particles *p,
         const struct noise_place place = { NOISE_LUBRICATION, now->step, p->tag[pair->i], p->tag[pair->j], pair->image };
         vec3 theta, chi;
         noise_vectors(noise->law, &noise->key, &place, &theta, &chi);
-
+        theta.z *= !noise->flat;
         const struct resistance *R = &near->resistance[k];
         const vec3 n = pair->normal;
         const double root_X = g * sqrt(R->X_A), root_Y = g * sqrt(R->Y_A);
@@ -62,8 +63,7 @@ struct force *lubrication_noise_new(struct settings *s, const struct suspension 
     noise->base = (struct force){ .name = "lubrication_noise", .origin_name = { "lubrication_noise" }, .kind = NOISE, .rotates = true,
                                   .keeps_resistance = true, .add = lubrication_noise_add };
     noise->drag = (const struct lubrication *)suspension_force(in, "lubrication");
-    noise->kT = in->kT;
-    noise->key = in->key;
+    noise->kT = in->kT, noise->key = in->key, noise->flat = in->dimensions == 2;
     noise->law = (enum noise_law)settings_choice(s, "distribution", laws, e);
     if (!noise->drag)
         settings_refuse(s, "", e, "needs forces.lubrication, whose fluctuation it is");

@@ -2,7 +2,7 @@
  * Contact numbers: `contacts.csv`
  *
  *     contacts   2 N_c/N, pairs of negative gap
- *     rattlers   particles that hold no place: fewer than 4 contacts (without friction) or 2 (with), counted again after each
+ *     rattlers   particles that hold no place: fewer than 4 contacts (without friction; 3 in two dimensions) or 2 (with), counted again after each
  *                round of removals until none is left
  *     backbone   contact number among the others
  *     near       2 N_p/N, all pairs within range of some force of the scene
@@ -46,7 +46,7 @@ static bool contacts_observe(struct observer *self, const struct suspension *s, 
 {
     struct rows *o = (struct rows *)self;
     const struct near_pairs *near = &s->neighbours.near;
-    const int N = s->particles.count, needed = s->neighbours.keeps_history ? 2 : 4;
+    const int N = s->particles.count, needed = s->neighbours.keeps_history ? 2 : s->dimensions + 1;
     struct held *held = o->scratch;
     memset(held, 0, (size_t)N * sizeof *held);
     const int all = count_contacts(near, held, N);

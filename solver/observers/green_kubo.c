@@ -72,7 +72,7 @@ static void write(const struct green_kubo *o, FILE *out)
         const double *sum = o->sum + row * (PLANES + 1), lag = (double)lags_of_row(row) * (double)o->base.every * o->of->dt;
         if (!(sum[0] > 0.0))
             continue;
-        const double mean = (sum[1] + sum[2] + sum[3]) / (3.0 * sum[0]);
+        const double mean = (sum[1] + sum[2] + sum[3]) / ((o->of->dimensions == 2 ? 1.0 : 3.0) * sum[0]);     /* in a plane only xy */
         if (row > 0)
             eta += o->of->box.volume / o->of->kT * 0.5 * (before + mean) * (lag - last);
         before = mean;

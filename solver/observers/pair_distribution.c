@@ -7,7 +7,7 @@
  * by pairs of species, in bins of the centre distance r (kind `far`) and in fine bins of the gap h around contact (kind `near`,
  * shells at r = a_a + a_b + h). Every image of a partner within the range is counted, so the shell is whole also where it
  * is wider than half the cell: no correction for corners is due, as a minimum-image count would need. A particle's own images,
- * which are a property of the lattice, are not counted.
+ * which are a property of the lattice, are not counted. In two dimensions V is the area of the cell, shells are rings.
  *
  * The plane is that of shear: g over (r_f, r_g) for pairs with |r_v| < half_width, from both ends of each pair.
  */
@@ -99,8 +99,9 @@ static void write_bins(const struct pair_distribution *o, FILE *out, const char 
     const double pairs = a == b ? 0.5 * number[a] * (number[a] - 1.0) : number[a] * number[b];
     for (int k = 0; k < bins; k++) {
         const double low = from + k * width, high = low + width, touch = *kind == 'n' ? p->kind[a].radius + p->kind[b].radius : 0.0;
-        const double volume = 4.0 / 3.0 * M_PI * (pow(touch + high, 3) - pow(touch + low, 3));
-        const double ideal = pairs / o->of->box.volume * volume * (double)o->snapshots, g = ideal > 0.0 ? (double)count[k] / ideal : 0.0;
+        const double shell = o->of->dimensions == 3 ? 4.0 / 3.0 * M_PI * (pow(touch + high, 3) - pow(touch + low, 3))
+                                                    : M_PI * (pow(touch + high, 2) - pow(touch + low, 2));
+        const double ideal = pairs / room_of(o->of) * shell * (double)o->snapshots, g = ideal > 0.0 ? (double)count[k] / ideal : 0.0;
         fprintf(out, "%s,%d,%d,%.17g,%.17g,%lld,%.9g", kind, a + 1, b + 1, low, high, (long long)count[k], g);
         if (o->of->kT > 0.0)
             fprintf(out, ",%.9g", -o->of->kT * log(g));
@@ -123,7 +124,8 @@ static void write_all(const struct pair_distribution *o, FILE *out)
 static void write_plane(const struct pair_distribution *o, FILE *out)
 {
     const double N = o->of->particles.count, width = 2.0 * o->plane_range / o->plane_bins;
-    const double ideal = N * (N - 1.0) / o->of->box.volume * width * width * 2.0 * o->half_width * (double)o->snapshots;
+    const double across = o->of->dimensions == 3 ? 2.0 * o->half_width : 1.0;           /* all centres lie in one plane, or in a slab */
+    const double ideal = N * (N - 1.0) / room_of(o->of) * width * width * across * (double)o->snapshots;
     fputs("r_flow,r_gradient,count,g\n", out);
     for (int row = 0; row < o->plane_bins; row++)
         for (int column = 0; column < o->plane_bins; column++) {

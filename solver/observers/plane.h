@@ -33,6 +33,13 @@ static inline struct plane plane_of(const struct box *b)
     return p;
 }
 
+/* Room for centres: the volume, in two dimensions the area of the cell [L^3, L^2]. */
+static inline double room_of(const struct suspension *s)
+{
+    const mat3 *H = &s->box.start;
+    return s->dimensions == 3 ? s->box.volume : fabs(H->m[0][0] * H->m[1][1] - H->m[0][1] * H->m[1][0]);
+}
+
 static inline bool origin_is_summed(const struct suspension *s, int origin)
 {
     return origin != s->kinetic_origin && !strstr(s->stress.name[origin], "_noise");

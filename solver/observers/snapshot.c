@@ -27,7 +27,7 @@ bool snapshot_take(struct snapshot *at, const struct suspension *s, double dista
     for (int a = 0; a < from->species_count; a++)
         for (int b = 0; b < from->species_count; b++)
             at->search.range[a][b] = fmax(distance, from->kind[a].radius + from->kind[b].radius + gap);
-    return neighbours_start(&at->search, &at->box, &at->particles, e) && neighbours_find(&at->search, &at->box, &at->particles, &relisted, e);
+    return neighbours_start(&at->search, &at->particles, e) && neighbours_find(&at->search, &at->box, &at->particles, &relisted, e);
 }
 
 void snapshot_free(struct snapshot *at)

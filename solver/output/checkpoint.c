@@ -253,6 +253,7 @@ static bool settle(struct suspension *s, struct error *e)
     near->resistance = near->keeps_resistance ? malloc((size_t)near->room * sizeof *near->resistance) : NULL;
     if (!near->pair || (near->keeps_resistance && !near->resistance))
         return error_out_of_memory(e);
+    n->steps_since = 0;                             /* nothing has moved: this search makes no list */
     const bool found = neighbours_find(n, &s->box, &s->particles, &relisted, e);
     n->steps_since = steps_since;                   /* this search is one that the undisturbed run did not make */
     return found;

@@ -64,7 +64,7 @@ static bool minimise(struct suspension *s, double *worst, struct error *e)
     for (int a = 0; a < p->species_count; a++)
         for (int b = 0; b < p->species_count; b++)
             search.range[a][b] = too_large * (p->kind[a].radius + p->kind[b].radius);
-    bool good = neighbours_start(&search, &s->box, p, e), relisted;
+    bool good = neighbours_start(&search, p, e), relisted;
     double dt = 0.1, alpha = 0.1;
     int downhill = 0;
     for (int step = 0; good && step < MOST_STEPS; step++) {

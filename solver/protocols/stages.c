@@ -228,7 +228,7 @@ static void inertia_add(const struct force *self, struct particles *p, struct ne
         changes = changes || change.m[k / 3][k % 3] != 0.0;
     }
     for (int i = 0; changes && i < p->count; i++)
-        if (!p->kind[p->species[i]].driven)         /* no force changes a driven one's velocity */
+        if (!p->kind[p->species[i]].driven)         /* of the others core/driven.c takes care */
             p->force[i] = plus(p->force[i], scaled(mat3_times(&change, p->position[i]), mass_of(p, i)));
 }
 

@@ -1,5 +1,7 @@
 #include "refuse.h"
 
+#include "core/images.h"
+
 #include <string.h>
 
 static bool refuse(struct error *e, const char *what) { return error_raise(e, ERROR_INPUT, "%s; run this scene with shear", what); }
@@ -23,7 +25,7 @@ bool engine_can(const struct simulation *sim, struct error *e)
     for (int k = 0; k < 9; k++)
         if (GG.m[k / 3][k % 3] != 0.0)
             return refuse(e, "shear: the engine has no flow that carries the gradient of another along");
-    if (s->neighbours.many_images)
+    if (images_meet(&s->box, 2.0 * s->neighbours.largest_range))
         return refuse(e, "box: an edge is below twice the farthest reach of the forces, so that a pair may meet through two faces at once");
     return true;
 }

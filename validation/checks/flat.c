@@ -5,7 +5,7 @@
  *
  *     z = 0 ,   u_z = 0 ,   w_x = w_y = 0          exactly, at every step
  *
- * under each equation of motion (check_flat_dynamics), and tables count two ways to move and one to turn. Without noise the plane is a symmetry
+ * under each equation of motion (check_flat_dynamics), no stress points out of it, and tables count two ways to move and one to turn. Without noise the plane is a symmetry
  * of three dimensions too: the same spheres in a scene of three dimensions take the same path, to rounding. So 2D needs no reference: it is the
  * 3D code with the motions taken away that symmetry would not make.
  */
@@ -167,6 +167,77 @@ static void judge_averages(struct check_run *run, const char *out, const char *w
                 compare(&w));       /* written with nine digits */
 }
 
+/* No force across the plane, so none in the stress, of whatever origin: its third row and column, but for its corner, are exactly zero. */
+static void judge_stress(struct check_run *run, const char *out, const char *what)
+{
+    static const char *const origins[] = { "contact_normal", "contact_tangential", "lubrication", "lubrication_noise", "drag", "kinetic" };
+    char path[PATH_LENGTH], why[WHY_LENGTH];
+    struct worst w = WORST_NONE;
+    double in_plane = 0.0;
+    path_join(path, out, "stress.csv");
+    if (access(path, F_OK) != 0) {
+        check_skip(run, what, "the candidate writes no stress.csv");
+        return;
+    }
+    for (size_t k = 0; k < sizeof origins / sizeof *origins; k++) {
+        char columns[200];
+        struct table t;
+        const char *o = origins[k];
+        snprintf(columns, sizeof columns, "%s_xx,%s_xy,%s_xz,%s_yz,%s_zx,%s_zy", o, o, o, o, o, o);
+        if (!table_read(path, columns, &t, why)) {
+            check_garbage(run, why);
+            return;
+        }
+        for (size_t r = 0; r < t.rows; r++) {
+            in_plane = fmax(in_plane, fabs(table_at(&t, r, 0)) + fabs(table_at(&t, r, 1)));
+            for (size_t c = 2; c < 6; c++)
+                worst_see(&w, table_at(&t, r, c), 0.0, 1.0, k);
+        }
+        table_free(&t);
+    }
+    check_error(run, INVARIANT, what, w.measured, w.expected, in_plane > 0.0 ? w.error : NAN, 0.0, "in two dimensions the %s stress has components across the plane, "
+                "up to %.3g, where no force points there", origins[w.at], w.error);
+}
+
+/* g of centres in a plane: pairs found over those of an ideal gas of that area, in rings; in squares where the plane of shear is drawn. */
+static void judge_distribution(struct check_run *run, const struct model *m, const char *out, size_t count, double snapshots, const char *what)
+{
+    char path[2][PATH_LENGTH], why[WHY_LENGTH];
+    struct table t;
+    struct worst w = WORST_NONE;
+    const double area = m->volume / m->cell[2][2], N = (double)count, half = 0.5 * N;      /* half of each species */
+    path_join(path[0], out, "pair_distribution.csv");
+    path_join(path[1], out, "pair_plane.csv");
+    if (access(path[0], F_OK) != 0 || access(path[1], F_OK) != 0) {
+        check_skip(run, what, "the candidate does not write both tables");
+        return;
+    }
+    if (!table_read(path[0], "kind$,species_a,species_b,low,high,count,g", &t, why)) {
+        check_garbage(run, why);
+        return;
+    }
+    for (size_t r = 0; r < t.rows; r++) {
+        const int a = (int)table_at(&t, r, 1), b = (int)table_at(&t, r, 2);
+        const double touch = strcmp(table_word(&t, r, 0), "near") == 0 ? m->radius[a - 1] + m->radius[b - 1] : 0.0;
+        const double ring = M_PI * (gsl_pow_2(touch + table_at(&t, r, 4)) - gsl_pow_2(touch + table_at(&t, r, 3)));
+        const double g = table_at(&t, r, 5) / ((a == b ? 0.5 * half * (half - 1.0) : half * half) / area * ring * snapshots);
+        worst_see(&w, table_at(&t, r, 6), g, fmax(g, 1.0), r);
+    }
+    table_free(&t);
+    if (!table_read(path[1], "r_flow,count,g", &t, why)) {
+        check_garbage(run, why);
+        return;
+    }
+    const double width = t.rows > 1 ? table_at(&t, 1, 0) - table_at(&t, 0, 0) : NAN;
+    for (size_t r = 0; r < t.rows; r++) {
+        const double g = table_at(&t, r, 1) / (N * (N - 1.0) / area * width * width * snapshots);
+        worst_see(&w, table_at(&t, r, 2), g, fmax(g, 1.0), r);
+    }
+    table_free(&t);
+    check_error(run, INVARIANT, what, w.measured, w.expected, w.error, 1e-7, "%s: row %zu: g is %s; the pairs found over those of an ideal gas in the plane give "
+                "that", what, w.at + 1, compare(&w));       /* written with nine digits */
+}
+
 static void judge_tables(struct check_run *run, const char *name)
 {
     char folder[PATH_LENGTH], out[PATH_LENGTH], what[96];
@@ -184,6 +255,8 @@ static void judge_tables(struct check_run *run, const char *name)
     judge_means(run, out, "displacement.csv", "lag,msd_x,msd_y,msd_z,D", SLOPE_OF_HALF, what);
     snprintf(what, sizeof what, "%s: displacement.csv: D_turn", name);
     judge_means(run, out, "displacement.csv", "lag,turn_x,turn_y,turn_z,D_turn", SLOPE_OF_SUM, what);
+    snprintf(what, sizeof what, "%s: stress across the plane", name);
+    judge_stress(run, out, what);
 }
 
 /* Under each equation of motion of parameters.dynamics, from a thermal start: with everything on that acts nothing leaves the plane. */
@@ -203,6 +276,9 @@ void check_flat_dynamics(struct check_run *run)
         scene_set(scene, "start.thermal", json_true());
         scene_set(scene, "output.temperature", json_pack("{si}", "every", 3));
         scene_set(scene, "output.averages", json_pack("{si}", "every", 3));
+        scene_set(scene, "output.stress", json_pack("{si}", "every", 3));
+        scene_set(scene, "output.pair_distribution", json_pack("{si sf si s{sf si} s{sf sf si}}", "every", 3, "range", 5.0, "bins", 10, "near", "gap", 0.4,
+                                                               "bins", 8, "plane", "range", 4.0, "half_width", 0.7, "bins", 8));
         scene_set(scene, "output.displacement", json_pack("{si si}", "every", 3, "levels", 1));
         scene_set(scene, "output.velocity_correlation", json_pack("{si si}", "every", 3, "levels", 1));
         scene_set(scene, "seed", json_integer(run->seed));
@@ -210,6 +286,11 @@ void check_flat_dynamics(struct check_run *run)
         if (row && track_ask(run, name, scene, row, count, at, 2, &track)) {
             judge_plane(run, name, &track);
             judge_tables(run, name);
+            char folder[PATH_LENGTH], out[PATH_LENGTH], what[96];
+            path_join(folder, run->work, name);
+            path_join(out, folder, "out");
+            snprintf(what, sizeof what, "%s: pair_distribution.csv: g", name);
+            judge_distribution(run, &m, out, count, floor(at[1] / 3.0) + 1.0, what);
             track_free(&track);
         }
         free(row);

@@ -196,8 +196,10 @@ static void check_driven(struct check_run *run)
         scene_set(scene, "output.stress.every", json_integer(at));
         step_key(scene, step);
         const double dt = scene_number(scene, step, NAN);
-        if (model_read(run, scene, &s.m) && scatter(run, (size_t)scene_number(parameters, "across", 0), open, 0.02, 0.05, &s)
-            && track_ask(run, dynamics, scene, s.row, 2 * s.pairs, &at, 1, &track)) {
+        const bool good = model_read(run, scene, &s.m) && scatter(run, (size_t)scene_number(parameters, "across", 0), open, 0.02, 0.05, &s);
+        for (size_t k = 0; good && k < 2 * s.pairs; k++)        /* whole cells away: put back at once, and followed without */
+            s.row[k].x[1] += scene_number(parameters, "cells_away", 0) * s.m.cell[1][1];
+        if (good && track_ask(run, dynamics, scene, s.row, 2 * s.pairs, &at, 1, &track)) {
             for (size_t k = 0; k < 2 * s.pairs; k++) {
                 const struct track_point *p = track_at(&track, 0, k);
                 for (size_t c = 0; c < 3 && s.row[k].species == 2; c++) {

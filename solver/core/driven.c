@@ -1,0 +1,14 @@
+#include "core/driven.h"
+
+void driven_keep(struct suspension *s, double ahead)
+{
+    struct particles *p = &s->particles;
+    if (!s->box.flow)
+        return;
+    const mat3 G = s->box.flow->gradient(s->box.flow, s->box.time + ahead);
+    for (int i = 0; i < p->count; i++) {
+        const struct species *kind = &p->kind[p->species[i]];
+        if (kind->driven)
+            p->velocity[i] = minus(kind->velocity, mat3_times(&G, box_unwrapped(&s->box, p->image[i])));
+    }
+}
