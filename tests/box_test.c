@@ -236,6 +236,11 @@ static void lost_particles_are_named(void)
     p.position[1] = p.position[0];
     check_true(!neighbours_find(&n, &b, &p, &relisted, &same) && strstr(same.text, "same centre"), "coincident centres");
     neighbours_free(&n);
+    struct box sheet = box_of(6, 6, 0.01, one_shear(0, 1, 0.0));
+    struct error thin = { 0 };
+    search_for(&n, &p, 1.0);
+    check_true(!neighbours_find(&n, &sheet, &p, &relisted, &thin) && thin.code == ERROR_RUN && strstr(thin.text, "0.01 thin"), "a cell with hundreds of images within range");
+    neighbours_free(&n);
     particles_free(&p);
 }
 

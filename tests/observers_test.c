@@ -140,6 +140,26 @@ static void ideal_gas_in_a_plane(void)
     check_relative(cell_of("green_kubo.csv", "0.001", "eta"), 7.1 * 9.3 * 8.7 / 0.31 * 0.5 * (C + cell_of("green_kubo.csv", "0.001", "C_xy")) * 0.001, 1e-12, "trapezoid over xy alone");
 }
 
+/* Discs without friction hold each other by three contacts: a honeycomb has no rattler in two dimensions. */
+static void a_honeycomb_holds_itself(void)
+{
+    const double d = 2.5;           /* 0.1 less than two radii */
+    const double place[4][2] = { { 0, 0 }, { 0, d }, { d * sqrt(3) / 2, 1.5 * d }, { d * sqrt(3) / 2, 2.5 * d } };
+    struct error e;
+    char scene[1200];
+    FILE *out = fopen(in_folder("comb.csv"), "w");
+    fputs("id,species,x,y,z,ux,uy,uz,wx,wy,wz\n", out);
+    for (int i = 0; i < 16; i++)
+        fprintf(out, "%d,1,%.17g,%.17g,0,0,0,0,0,0,0\n", i + 1, place[i % 4][0] + i / 4 % 2 * d * sqrt(3), place[i % 4][1] + i / 8 * 3 * d);
+    fclose(out);
+    snprintf(scene, sizeof scene, "{ \"about\": \"test\", \"dimensions\": 2, \"start\": { \"file\": \"comb.csv\" }, \"box\": { \"lengths\": [%.17g, %.17g, 9], \"periodic\": [true, true, true] },\n"
+             "\"species\": [ { \"name\": \"a\", \"radius\": 1.3, \"density\": 0.4 } ], \"forces\": { \"contact\": { \"normal_stiffness\": 50, \"friction\": 0 } },\n"
+             "\"dynamics\": { \"verlet\": { \"dt\": 0.001 } }, \"run\": { \"steps\": 0 }, \"output\": { \"contacts\": { \"every\": 1 } } }", 2 * d * sqrt(3), 6 * d);
+    check_true(run(scene, &e), e.text);
+    check_close(cell_of("contacts.csv", "0", "contacts"), 3, 1e-14, "three contacts each");
+    check_close(cell_of("contacts.csv", "0", "rattlers"), 0, 0, "nobody rattles");
+}
+
 /* Two shears of one rate: both tables speak of the plane that comes first, x along y before x along z. One contact, along x and y. */
 static void tables_agree_about_the_plane(void)
 {
@@ -243,6 +263,7 @@ static void wrong_observers_are_named(void)
 
 static const struct unit_test tests[] = {
     { "instants by hand", instants_by_hand },
+    { "a honeycomb holds itself", a_honeycomb_holds_itself },
     { "two shears of one rate", tables_agree_about_the_plane },
     { "an ideal gas in a plane", ideal_gas_in_a_plane },
     { "an ideal gas has g of one", ideal_gas_has_g_of_one },

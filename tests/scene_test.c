@@ -136,6 +136,19 @@ static void wrong_values_are_named(void)
     }
 }
 
+static void flows_across_a_plane_are_refused(void)
+{
+    static const char *const axes[4][2] = { { "z", "x" }, { "y", "z" }, { "x", "z" }, { "z", "y" } };
+    make_folder();
+    for (int k = 0; k < 4; k++) {
+        char shear[100];
+        struct error e = { 0 };
+        snprintf(shear, sizeof shear, "shear=[{\"flow\":\"%s\",\"gradient\":\"%s\",\"rate\":0.1}]", axes[k][0], axes[k][1]);
+        const char *const set[] = { "dimensions=2", shear };
+        check_true(!run_with(set, 2, NULL, &e) && e.code == ERROR_INPUT && strstr(e.text, "in two dimensions flows lie in the plane"), e.text);
+    }
+}
+
 static void broken_files_are_located(void)
 {
     struct error e = { 0 };
@@ -261,6 +274,7 @@ static void cases_are_answered(void)
 
 static const struct unit_test tests[] = {
     { "wrong values are named", wrong_values_are_named },
+    { "flows across a plane are refused", flows_across_a_plane_are_refused },
     { "broken files are located", broken_files_are_located },
     { "a random start does not overlap", random_start_does_not_overlap },
     { "looking changes nothing", looking_changes_nothing },

@@ -9,6 +9,7 @@
 #include "check.h"
 #include "offline.h"
 #include "precision.h"
+#include "tables.h"
 
 #include <fnmatch.h>
 #include <math.h>
@@ -16,6 +17,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static char *copy_text(const char *text)
 {
@@ -142,6 +144,26 @@ struct result *check_inconclusive(struct check_run *run, const char *what, const
 void check_garbage(struct check_run *run, const char *why)
 {
     check_error(run, INVARIANT, "readable answer", NAN, NAN, NAN, NAN, "candidate wrote garbage or too little: %s", why);
+}
+
+bool check_table(struct check_run *run, const char *out, const char *file, const char *columns, const char *what, struct table *t)
+{
+    char path[PATH_LENGTH], why[WHY_LENGTH];
+    path_join(path, out, file);
+    if (access(path, F_OK) != 0) {
+        check_skip(run, what, "the candidate writes no %s", file);
+        return false;
+    }
+    if (!table_read(path, columns, t, why)) {
+        check_garbage(run, why);
+        return false;
+    }
+    if (t->rows > 0)
+        return true;
+    table_free(t);
+    snprintf(why, sizeof why, "%s has no rows", file);
+    check_garbage(run, why);
+    return false;
 }
 
 void result_picture(struct result *r, const char *svg_file_in_work_folder)

@@ -89,6 +89,9 @@ bool check_ask_part(struct check_run *run, const char *name, const char *part, c
 
 /* The candidate answered with something unreadable: record a failure with this sentence (file and line are in it). */
 void check_garbage(struct check_run *run, const char *why);
+/* One of the tables that a candidate need not write. False if it is not there (`what` is skipped), cannot be read or is empty (recorded). */
+struct table;
+bool check_table(struct check_run *run, const char *out, const char *file, const char *columns, const char *what, struct table *t);
 
 /* Progress of a long check ("draw 2000 of 20000"); shown only on a terminal. */
 void check_progress(struct check_run *run, const char *format, ...) __attribute__((format(printf, 2, 3)));

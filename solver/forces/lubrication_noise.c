@@ -38,7 +38,7 @@ static void lubrication_noise_add(const struct force *self, struct particles *p,
         const struct noise_place place = { NOISE_LUBRICATION, now->step, p->tag[pair->i], p->tag[pair->j], pair->image };
         vec3 theta, chi;
         noise_vectors(noise->law, &noise->key, &place, &theta, &chi);
-        theta.z *= !noise->flat;
+        theta.z = noise->flat ? 0.0 : theta.z;
         const struct resistance *R = &near->resistance[k];
         const vec3 n = pair->normal;
         const double root_X = g * sqrt(R->X_A), root_Y = g * sqrt(R->Y_A);

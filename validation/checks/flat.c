@@ -15,7 +15,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 enum { HALF_SUM, SUM, TRAPEZOIDS, SLOPE_OF_HALF, SLOPE_OF_SUM };      /* what a column says of the three before it */
 
@@ -100,19 +99,11 @@ void check_flat(struct check_run *run)
 /* Numbers of one row of a table that follow from its others in two dimensions: the mean over two axes, the one spin. */
 static void judge_means(struct check_run *run, const char *out, const char *file, const char *columns, int of, const char *what)
 {
-    char path[PATH_LENGTH], why[WHY_LENGTH];
     struct table t;
     struct worst w = WORST_NONE;
     double integral = 0.0, before = 0.0, lag = 0.0, size = 0.0;
-    path_join(path, out, file);
-    if (access(path, F_OK) != 0) {
-        check_skip(run, what, "the candidate writes no %s", file);
+    if (!check_table(run, out, file, columns, what, &t))
         return;
-    }
-    if (!table_read(path, columns, &t, why)) {
-        check_garbage(run, why);
-        return;
-    }
     for (size_t r = 0; r < t.rows; r++)
         size = fmax(size, fabs(table_at(&t, r, 4)));
     for (size_t r = 0; r < t.rows; r++) {
@@ -133,20 +124,11 @@ static void judge_means(struct check_run *run, const char *out, const char *file
 /* Averages of temperatures are those of the table of temperatures beyond what is dropped. */
 static void judge_averages(struct check_run *run, const char *out, const char *what)
 {
-    char path[2][PATH_LENGTH], why[WHY_LENGTH];
     struct table averages, temperatures;
     struct worst w = WORST_NONE;
-    path_join(path[0], out, "averages.csv");
-    path_join(path[1], out, "temperature.csv");
-    if (access(path[0], F_OK) != 0 || access(path[1], F_OK) != 0) {
-        check_skip(run, what, "the candidate does not write both tables");
+    if (!check_table(run, out, "averages.csv", "quantity$,mean,discarded", what, &averages))
         return;
-    }
-    if (!table_read(path[0], "quantity$,mean,discarded", &averages, why)) {
-        check_garbage(run, why);
-        return;
-    }
-    const bool read = table_read(path[1], "T,W", &temperatures, why);
+    const bool read = check_table(run, out, "temperature.csv", "T,W", what, &temperatures);
     for (size_t r = 0; read && r < averages.rows; r++) {
         const char *name = table_word(&averages, r, 0);
         const size_t column = strcmp(name, "W") == 0, first = (size_t)table_at(&averages, r, 2);
@@ -158,10 +140,8 @@ static void judge_averages(struct check_run *run, const char *out, const char *w
         worst_see(&w, table_at(&averages, r, 1), mean, mean, r);
     }
     table_free(&averages);
-    if (!read) {
-        check_garbage(run, why);
+    if (!read)
         return;
-    }
     table_free(&temperatures);
     check_error(run, INVARIANT, what, w.measured, w.expected, w.error, 1e-7, "%s: row %zu says %s, the mean of the table of temperatures", what, w.at + 1,
                 compare(&w));       /* written with nine digits */
@@ -171,23 +151,15 @@ static void judge_averages(struct check_run *run, const char *out, const char *w
 static void judge_stress(struct check_run *run, const char *out, const char *what)
 {
     static const char *const origins[] = { "contact_normal", "contact_tangential", "lubrication", "lubrication_noise", "drag", "kinetic" };
-    char path[PATH_LENGTH], why[WHY_LENGTH];
     struct worst w = WORST_NONE;
     double in_plane = 0.0;
-    path_join(path, out, "stress.csv");
-    if (access(path, F_OK) != 0) {
-        check_skip(run, what, "the candidate writes no stress.csv");
-        return;
-    }
     for (size_t k = 0; k < sizeof origins / sizeof *origins; k++) {
         char columns[200];
         struct table t;
         const char *o = origins[k];
         snprintf(columns, sizeof columns, "%s_xx,%s_xy,%s_xz,%s_yz,%s_zx,%s_zy", o, o, o, o, o, o);
-        if (!table_read(path, columns, &t, why)) {
-            check_garbage(run, why);
+        if (!check_table(run, out, "stress.csv", columns, what, &t))
             return;
-        }
         for (size_t r = 0; r < t.rows; r++) {
             in_plane = fmax(in_plane, fabs(table_at(&t, r, 0)) + fabs(table_at(&t, r, 1)));
             for (size_t c = 2; c < 6; c++)
@@ -202,20 +174,11 @@ static void judge_stress(struct check_run *run, const char *out, const char *wha
 /* g of centres in a plane: pairs found over those of an ideal gas of that area, in rings; in squares where the plane of shear is drawn. */
 static void judge_distribution(struct check_run *run, const struct model *m, const char *out, size_t count, double snapshots, const char *what)
 {
-    char path[2][PATH_LENGTH], why[WHY_LENGTH];
     struct table t;
     struct worst w = WORST_NONE;
     const double area = m->volume / m->cell[2][2], N = (double)count, half = 0.5 * N;      /* half of each species */
-    path_join(path[0], out, "pair_distribution.csv");
-    path_join(path[1], out, "pair_plane.csv");
-    if (access(path[0], F_OK) != 0 || access(path[1], F_OK) != 0) {
-        check_skip(run, what, "the candidate does not write both tables");
+    if (!check_table(run, out, "pair_distribution.csv", "kind$,species_a,species_b,low,high,count,g", what, &t))
         return;
-    }
-    if (!table_read(path[0], "kind$,species_a,species_b,low,high,count,g", &t, why)) {
-        check_garbage(run, why);
-        return;
-    }
     for (size_t r = 0; r < t.rows; r++) {
         const int a = (int)table_at(&t, r, 1), b = (int)table_at(&t, r, 2);
         const double touch = strcmp(table_word(&t, r, 0), "near") == 0 ? m->radius[a - 1] + m->radius[b - 1] : 0.0;
@@ -224,10 +187,8 @@ static void judge_distribution(struct check_run *run, const struct model *m, con
         worst_see(&w, table_at(&t, r, 6), g, fmax(g, 1.0), r);
     }
     table_free(&t);
-    if (!table_read(path[1], "r_flow,count,g", &t, why)) {
-        check_garbage(run, why);
+    if (!check_table(run, out, "pair_plane.csv", "r_flow,count,g", what, &t))
         return;
-    }
     const double width = t.rows > 1 ? table_at(&t, 1, 0) - table_at(&t, 0, 0) : NAN;
     for (size_t r = 0; r < t.rows; r++) {
         const double g = table_at(&t, r, 1) / (N * (N - 1.0) / area * width * width * snapshots);
@@ -238,7 +199,7 @@ static void judge_distribution(struct check_run *run, const struct model *m, con
                 "that", what, w.at + 1, compare(&w));       /* written with nine digits */
 }
 
-static void judge_tables(struct check_run *run, const char *name)
+static void judge_tables(struct check_run *run, const char *name, const struct model *m, size_t count, double snapshots)
 {
     char folder[PATH_LENGTH], out[PATH_LENGTH], what[96];
     path_join(folder, run->work, name);
@@ -257,6 +218,8 @@ static void judge_tables(struct check_run *run, const char *name)
     judge_means(run, out, "displacement.csv", "lag,turn_x,turn_y,turn_z,D_turn", SLOPE_OF_SUM, what);
     snprintf(what, sizeof what, "%s: stress across the plane", name);
     judge_stress(run, out, what);
+    snprintf(what, sizeof what, "%s: pair_distribution.csv: g", name);
+    judge_distribution(run, m, out, count, snapshots, what);
 }
 
 /* Under each equation of motion of parameters.dynamics, from a thermal start: with everything on that acts nothing leaves the plane. */
@@ -285,12 +248,7 @@ void check_flat_dynamics(struct check_run *run)
         struct state_row *row = model_read(run, scene, &m) ? start_flat(run, &m, across, scene_number(scene, "fluid.kT", NAN)) : NULL;
         if (row && track_ask(run, name, scene, row, count, at, 2, &track)) {
             judge_plane(run, name, &track);
-            judge_tables(run, name);
-            char folder[PATH_LENGTH], out[PATH_LENGTH], what[96];
-            path_join(folder, run->work, name);
-            path_join(out, folder, "out");
-            snprintf(what, sizeof what, "%s: pair_distribution.csv: g", name);
-            judge_distribution(run, &m, out, count, floor(at[1] / 3.0) + 1.0, what);
+            judge_tables(run, name, &m, count, floor(at[1] / 3.0) + 1.0);
             track_free(&track);
         }
         free(row);

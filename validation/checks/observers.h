@@ -1,4 +1,4 @@
-/* Layer 6, tables of a run: what their checks share (observers.c, observers_run.c). */
+/* Layer 6, tables of a run: what their checks share (observers.c, observers_moment.c, observers_run.c). */
 #ifndef OBSERVERS_CHECK_H
 #define OBSERVERS_CHECK_H
 
@@ -21,6 +21,8 @@ struct film {
 };
 
 double film_radius(const struct film *f, size_t i);
+double film_mass(const struct film *f, size_t i);
+bool film_driven(const struct film *f, size_t i);
 /* Velocity and spin without those of the flow. */
 void film_peculiar(const struct film *f, const struct track_point *p, double c[3], double w[3]);
 /* False where the candidate has not written the table (skipped) or it cannot be read (recorded). */
@@ -36,6 +38,13 @@ void film_structure(const struct film *f, size_t frame, double shell, double dep
 double film_depth(const struct film *f);
 /* Kinetic energies by axis, of a species from 1 or of all (0): translation, then rotation. */
 void film_temperatures(const struct film *f, size_t frame, int species, double T[6]);
+
+/* What there is at each moment (observers_moment.c). */
+void film_judge_driven(const struct film *f);
+void film_judge_temperature(const struct film *f);
+void film_judge_contacts(const struct film *f);
+void film_judge_viscosity(const struct film *f);
+void film_judge_brownian(const struct film *f);
 
 /* The tables that are written at the end, and those of stresses (observers_run.c). */
 void film_judge_lags(const struct film *f);

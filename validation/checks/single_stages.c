@@ -125,11 +125,9 @@ static bool judge_flow(struct check_run *run, const char *drive, const char *nam
                 table_at(&t, strain.at, 0), compare(&strain));
     const size_t rows = t.rows;
     table_free(&t);
-    path_join(path, out, "out/viscosity.csv");
+    path_join(path, out, "out");
     snprintf(what, sizeof what, "%s: rate and stress in the plane", drive);
-    if (!table_read(path, "rate,shear_drag,shear", &t, why))
-        check_skip(run, what, "the candidate writes no viscosity.csv");
-    else {
+    if (check_table(run, path, "viscosity.csv", "rate,shear_drag,shear", what, &t)) {
         const struct theory_rate *first = &stage[0].shear[0];
         for (size_t r = 0; r < t.rows && r < rows; r++) {
             const double rate = flow[r][first->flow][first->gradient], shear = unit * (rate + flow[r][first->gradient][first->flow]);
@@ -239,56 +237,50 @@ static void turned_by(const struct theory_stage *stage, size_t stages, double t,
         turn[k] = 0.5 * (S[(k + 2) % 3][(k + 1) % 3] - S[(k + 1) % 3][(k + 2) % 3]);
 }
 
-/* A run that begins in the middle, its samples, and the table that it wrote. */
-struct late { const char *label; const struct theory_stage *stage; size_t stages; double begin, every; const struct track *track; const struct table *displacement; };
-enum { LATE_FRAMES = 49 };
+enum { LATE_FRAMES = 49, LONGEST = 16 };    /* samples of a run that begins in the middle; lags up to LONGEST have all samples as origins */
 
-/* Mean square of the angle beyond that of the flow, from the angles of the trajectory; lags up to 16 samples, whose origins are all samples. */
-static void judge_turn(struct check_run *run, const struct late *l)
+/* Mean square of the angle beyond that of the flow, from the angles of the trajectory. */
+static void expected_turns(const struct theory_stage *stage, size_t stages, double begin, double every, const struct track *track, double expected[LONGEST + 1][3])
 {
-    double flow[LATE_FRAMES][3], expected[17][3] = { { 0 } }, largest = 0.0;
-    struct worst w = WORST_NONE;
-    char what[96];
-    snprintf(what, sizeof what, "%s: angle beyond the flow's", l->label);
+    double flow[LATE_FRAMES][3];
     for (size_t s = 0; s < LATE_FRAMES; s++)
-        turned_by(l->stage, l->stages, l->begin + (double)s * l->every, flow[s]);
-    for (size_t lag = 1; lag <= 16; lag++)
+        turned_by(stage, stages, begin + (double)s * every, flow[s]);
+    for (size_t lag = 1; lag <= LONGEST; lag++)
         for (size_t k = 0; k < 3; k++) {
             double sum = 0.0, n = 0.0;
             for (size_t s = 0; s + lag < LATE_FRAMES; s++)
                 for (size_t i = 0; i < SPHERES; i++, n += 1.0)
-                    sum += gsl_pow_2(track_at(l->track, s + lag, i)->turn[k] - track_at(l->track, s, i)->turn[k] - flow[s + lag][k] + flow[s][k]);
+                    sum += gsl_pow_2(track_at(track, s + lag, i)->turn[k] - track_at(track, s, i)->turn[k] - flow[s + lag][k] + flow[s][k]);
             expected[lag][k] = sum / n;
-            largest = fmax(largest, sum / n);
         }
-    for (size_t r = 0; r < l->displacement->rows; r++) {
-        const size_t lag = (size_t)lround(table_at(l->displacement, r, 0) / l->every);
-        for (size_t k = 0; lag >= 1 && lag <= 16 && k < 3; k++)
-            worst_see(&w, table_at(l->displacement, r, 4 + k), expected[lag][k], largest, r);
-    }
-    check_error(run, MODEL, what, w.measured, w.expected, w.error, 1e-8, "row %zu of displacement.csv says a mean square angle of %s; the angles of its trajectory without "
-                "the integral of the flow's rate of turning give that", w.at + 1, compare(&w));      /* sums of the same 17 digits */
 }
 
 /* Spheres that follow the flow have no displacement of their own; their spins follow it with delay, so there is an angle. */
-static void judge_late_displacement(struct check_run *run, struct late *l, const char *path, double radius)
+static void judge_displacement(struct check_run *run, const char *label, const char *out, double radius, double every, double expected[LONGEST + 1][3])
 {
-    struct worst own = WORST_NONE;
+    struct worst own = WORST_NONE, turn = WORST_NONE;
     struct table t;
-    char what[96], why[WHY_LENGTH];
-    snprintf(what, sizeof what, "%s: displacement beyond the flow's", l->label);
-    if (!table_read(path, "lag,msd_x,msd_y,msd_z,turn_x,turn_y,turn_z", &t, why)) {
-        check_skip(run, what, "the candidate writes no displacement.csv");
+    double largest = 0.0;
+    char what[96];
+    snprintf(what, sizeof what, "%s: displacement beyond the flow's", label);
+    if (!check_table(run, out, "displacement.csv", "lag,msd_x,msd_y,msd_z,turn_x,turn_y,turn_z", what, &t))
         return;
+    for (size_t k = 0; k < 3; k++)
+        largest = fmax(largest, expected[LONGEST][k]);
+    for (size_t r = 0; r < t.rows; r++) {
+        const size_t lag = (size_t)lround(table_at(&t, r, 0) / every);
+        for (size_t k = 0; k < 3; k++) {
+            worst_see(&own, table_at(&t, r, 1 + k), 0.0, gsl_pow_2(radius), r);
+            if (lag >= 1 && lag <= LONGEST)
+                worst_see(&turn, table_at(&t, r, 4 + k), expected[lag][k], largest, r);
+        }
     }
-    for (size_t r = 0; r < t.rows; r++)
-        for (size_t c = 1; c < 4; c++)
-            worst_see(&own, table_at(&t, r, c), 0.0, gsl_pow_2(radius), r);
+    table_free(&t);
     check_error(run, MODEL, what, own.measured, own.expected, own.error, 1e-4, "spheres that follow the flow have a mean square displacement of %.3g of "
                 "their own: what the flow does to the old place is not taken off as it should be", own.measured);
-    l->displacement = &t;
-    judge_turn(run, l);
-    table_free(&t);
+    snprintf(what, sizeof what, "%s: angle beyond the flow's", label);
+    check_error(run, MODEL, what, turn.measured, turn.expected, turn.error, 1e-8, "row %zu of displacement.csv says a mean square angle of %s; the angles of its trajectory "
+                "without the integral of the flow's rate of turning give that", turn.at + 1, compare(&turn));      /* sums of the same 17 digits */
 }
 
 /*
@@ -337,10 +329,11 @@ static void try_late(struct check_run *run, const json_t *drive, size_t number)
                         "counts from the begin of the run", strain.at, begin, compare(&strain));
         } else
             check_garbage(run, why);
-        path_join(path, out, "out/displacement.csv");
-        struct late l = { label, stage, stages, begin, every * dt, &track, NULL };
-        judge_late_displacement(run, &l, path, m.radius[0]);
+        double turns[LONGEST + 1][3] = { { 0 } };
+        expected_turns(stage, stages, begin, every * dt, &track, turns);
         track_free(&track);
+        path_join(path, out, "out");
+        judge_displacement(run, label, path, m.radius[0], every * dt, turns);
     }
     json_decref(scene);
 }
