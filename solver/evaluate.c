@@ -41,13 +41,16 @@ static bool contacts_read(const char *path, struct contacts *c, struct error *e)
     return !error_raised(e);
 }
 
-/* The history slot of a pair of tags (first image found); NULL if they are not neighbours. */
-static vec3 *history_of(struct neighbours *n, const struct particles *p, int tag_i, int tag_j)
+/* The history of a pair of tags, that of their nearest images: they touch if any do; NULL if they are not neighbours. */
+static vec3 *history_of(struct near_pairs *near, const struct particles *p, int tag_i, int tag_j)
 {
-    for (int k = 0; k < n->count && n->history; k++)
-        if (p->tag[n->candidate[k].i] == tag_i && p->tag[n->candidate[k].j] == tag_j)
-            return &n->history[k];
-    return NULL;
+    struct pair *nearest = NULL;
+    for (int k = 0; k < near->count; k++) {
+        struct pair *pair = &near->pair[k];
+        if (p->tag[pair->i] == tag_i && p->tag[pair->j] == tag_j && (!nearest || pair->distance < nearest->distance))
+            nearest = pair;
+    }
+    return nearest ? nearest->history : NULL;
 }
 
 /* The history of a contact is that of i against j; the list keeps pairs with the smaller tag first. */
@@ -56,7 +59,7 @@ static void contacts_place(const struct contacts *c, int state, struct suspensio
     for (int k = 0; k < c->count; k++) {
         const bool swap = c->row[k].i > c->row[k].j;
         vec3 *slot = c->row[k].state != state ? NULL
-                   : history_of(&s->neighbours, &s->particles, swap ? c->row[k].j : c->row[k].i, swap ? c->row[k].i : c->row[k].j);
+                   : history_of(&s->neighbours.near, &s->particles, swap ? c->row[k].j : c->row[k].i, swap ? c->row[k].i : c->row[k].j);
         if (slot)
             *slot = scaled(c->row[k].history, swap ? -1.0 : 1.0);
     }

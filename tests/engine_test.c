@@ -178,8 +178,6 @@ static void refuses_what_it_cannot(void)
     refused("[true, true, true]", "[true, true, false]", "periodic cells only");
     refused("\"lengths\": [8.0, 7.0, 9.0]", "\"cell\": [[8, 1, 0], [0, 7, 0], [0, 0, 9]]", "A along x");
     refused(shear, "\"shear\": [ { \"flow\": \"y\", \"gradient\": \"x\", \"rate\": 1 } ]", "name the axes so");
-    refused(shear, "\"shear\": [ { \"flow\": \"x\", \"gradient\": \"y\", \"rate\": 1 }, { \"flow\": \"y\", \"gradient\": \"z\", \"rate\": 1 } ]",
-            "carries");
     refused(shear, "\"stages\": [ { \"duration\": 1, \"shear\": [ { \"flow\": \"x\", \"gradient\": \"y\", \"rate\": 1 } ] } ]", "steady shear only");
     refused("\"count\": 60", "\"count\": 8", "two faces at once");
 }

@@ -30,11 +30,10 @@ mat3 box_deformation(const struct box *b, double from, double to)
     if (b->flow)
         return flow_deformation(b->flow, from, to);
     const double duration = to - from;
-    const mat3 GG = mat3_product(&b->gradient, &b->gradient);
     mat3 F;
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 3; c++)
-            F.m[r][c] = (r == c) + b->gradient.m[r][c] * duration + 0.5 * GG.m[r][c] * duration * duration;
+            F.m[r][c] = (r == c) + b->gradient.m[r][c] * duration;
     return F;
 }
 
@@ -69,14 +68,13 @@ bool box_new(struct box *b, const mat3 *cell, const bool periodic[3], const mat3
         b->periodic[k] = periodic[k];
         b->lattice[k][k] = 1;
     }
-    const mat3 GG = mat3_product(gradient, gradient), GGG = mat3_product(&GG, gradient);
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 3; c++) {
-            const double g = gradient->m[r][c];
-            if (GGG.m[r][c] != 0.0 || (r == c && g != 0.0))
-                return error_raise(e, ERROR_INPUT, "shear: the flows chase each other in a circle; only sets whose cell can be remapped "
-                                                   "are simple shears (none may have its flow along a gradient that depends on it)");
-            b->tilts[r][c] = g != 0.0 || GG.m[r][c] != 0.0;
+            const double g = gradient->m[r][c], *flows = gradient->m[c];
+            if (g != 0.0 && (flows[0] != 0.0 || flows[1] != 0.0 || flows[2] != 0.0))
+                return error_raise(e, ERROR_INPUT, "shear or stages: %c is a flow axis of one shear and the gradient axis of another; then "
+                                                   "images accelerate even in steady flow, and no two of a sphere alike", "xyz"[c]);
+            b->tilts[r][c] = g != 0.0;
             if (b->tilts[r][c] && periodic[c] && !periodic[r])
                 return error_raise(e, ERROR_INPUT, "box.periodic: flow along %c with a periodic gradient axis %c needs %c periodic too",
                                    "xyz"[r], "xyz"[c], "xyz"[r]);

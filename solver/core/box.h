@@ -3,7 +3,7 @@
  *
  *     U_inf(x) = G x                background flow, G = dU/dx a superposition of simple shears
  *     H(t) = F(t) H(0) M            cell: columns A, B, C
- *     F(t) = I + G t + G G t^2 / 2  what the flow makes of a material line; exact, for such a G is nilpotent (G^3 = 0); G(t): core/flow.h
+ *     F(t) = I + G t                what the flow makes of a material line; exact, for no axis is both a flow and a gradient axis (G G = 0); G(t): core/flow.h
  *
  * M is an integer matrix of determinant one that picks the least tilted cell of the same lattice (remap): it labels
  * images anew and changes nothing else. F is computed from time 0, never accumulated.

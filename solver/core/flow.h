@@ -4,7 +4,7 @@
  *     F(from -> to) = I + S(to) - S(from),     S(t) = integral of G from 0 to t
  *
  * is what it makes of a material line. It is exact, however G changes, if no axis is both a flow and a gradient axis at
- * any time, for then G(t) G(t') = 0. Who makes such a flow (protocols/stages.c) sees to that.
+ * any time, for then G(t) G(t') = 0; box_new sees to that.
  */
 #ifndef CORE_FLOW_H
 #define CORE_FLOW_H

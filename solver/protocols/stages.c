@@ -149,6 +149,7 @@ static void read_stage(struct settings *one, struct stage *at, struct flow *flow
         settings_refuse(one, "shear", e, "must list at most %d shears", MAX_LAWS);
     const bool by_strain = settings_has(one, "strain");
     const double strain = by_strain ? settings_positive(one, "strain", e) : 0.0;
+    mat3 fastest = { { { 0.0 } } };                             /* of this stage: shears along the same axes add up */
     at->duration = by_strain ? 1.0 : settings_positive(one, "duration", e);
     if (by_strain && settings_has(one, "duration"))
         settings_refuse(one, "strain", e, "must not stand beside duration");
@@ -163,8 +164,9 @@ static void read_stage(struct settings *one, struct stage *at, struct flow *flow
             settings_refuse(one, "strain", e, "needs a first shear at a constant rate, not 0; give a duration");
         if (k == 0 && by_strain && !error_raised(e))
             at->duration = strain / fabs(settings_number(&shear, "rate", e));
-        double *largest = &flow->largest.m[l->flow][l->gradient];
-        *largest = fmax(*largest, read_rate(&shear, l, at->duration, e));
+        double *rate = &fastest.m[l->flow][l->gradient], *largest = &flow->largest.m[l->flow][l->gradient];
+        *rate += read_rate(&shear, l, at->duration, e);
+        *largest = fmax(*largest, *rate);
         settings_done(&shear, e);
     }
     if (by_strain && at->laws == 0)
@@ -194,16 +196,6 @@ struct flow *stages_new(struct settings *root, struct error *e)
             all->base.flow_axis = at->law[0].flow;
             all->base.gradient_axis = at->law[0].gradient;
         }
-    }
-    for (int axis = 0; axis < 3; axis++) {
-        double flows = 0.0, varies = 0.0;
-        for (int k = 0; k < 3; k++) {
-            flows = fmax(flows, all->base.largest.m[axis][k]);
-            varies = fmax(varies, all->base.largest.m[k][axis]);
-        }
-        if (flows > 0.0 && varies > 0.0)
-            error_raise(e, ERROR_INPUT, "stages: %c is a flow axis of one shear and the gradient axis of another; with rates that change, the cell "
-                                        "is known in closed form only if no axis is both", "xyz"[axis]);
     }
     if (!error_raised(e))
         return &all->base;

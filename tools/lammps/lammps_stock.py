@@ -94,7 +94,7 @@ class Stock:
         need(isinstance(self.dt, (int, float)), "fix nve/sphere is half-step velocity Verlet with a step that is a number: only \"dynamics\": { \"verlet\": { \"dt\": ... } }")
         if self.protocol != "run":
             return
-        self.steps = round(run["steps"] if "steps" in run else run["time"] / self.dt if "time" in run else run["strain"] / (abs(self.rate) * self.dt))
+        self.steps = run["steps"] if "steps" in run else math.ceil((run["time"] if "time" in run else run["strain"] / abs(self.rate)) / self.dt * (1 - 1e-12))
         only(output, "the output", "stress states")
         states, self.stress_every = output.get("states", {}), output.get("stress", {}).get("every", 0)
         need(not states.get("turn"), "LAMMPS does not integrate the angle that a sphere has turned through")

@@ -121,30 +121,55 @@ static void judge_means(struct check_run *run, const char *out, const char *file
                 "to move and one to turn", what, w.at + 1, compare(&w));
 }
 
-/* Averages of temperatures are those of the table of temperatures beyond what is dropped. */
+/* Averages are those of the tables of temperature and viscosity beyond what is dropped. */
 static void judge_averages(struct check_run *run, const char *out, const char *what)
 {
-    struct table averages, temperatures;
+    static const char *const names[3] = { "T", "W", "pressure" };
+    struct table averages, table;
     struct worst w = WORST_NONE;
     if (!check_table(run, out, "averages.csv", "quantity$,mean,discarded", what, &averages))
         return;
-    const bool read = check_table(run, out, "temperature.csv", "T,W", what, &temperatures);
-    for (size_t r = 0; read && r < averages.rows; r++) {
-        const char *name = table_word(&averages, r, 0);
-        const size_t column = strcmp(name, "W") == 0, first = (size_t)table_at(&averages, r, 2);
-        double mean = 0.0;
-        if ((strcmp(name, "T") != 0 && !column) || first >= temperatures.rows)
+    for (int k = 0; k < 3; k++) {
+        if (!check_table(run, out, k < 2 ? "temperature.csv" : "viscosity.csv", names[k], what, &table))
             continue;
-        for (size_t k = first; k < temperatures.rows; k++)
-            mean += table_at(&temperatures, k, column) / (double)(temperatures.rows - first);
-        worst_see(&w, table_at(&averages, r, 1), mean, mean, r);
+        for (size_t r = 0; r < averages.rows; r++) {
+            const size_t first = (size_t)table_at(&averages, r, 2);
+            double mean = 0.0;
+            if (strcmp(table_word(&averages, r, 0), names[k]) != 0 || first >= table.rows)
+                continue;
+            for (size_t s = first; s < table.rows; s++)
+                mean += table_at(&table, s, 0) / (double)(table.rows - first);
+            worst_see(&w, table_at(&averages, r, 1), mean, fabs(mean), r);
+        }
+        table_free(&table);
     }
     table_free(&averages);
-    if (!read)
+    check_error(run, INVARIANT, what, w.measured, w.expected, w.error, 1e-7, "%s: row %zu says %s, the mean of its own table", what, w.at + 1, compare(&w));
+    /* written with nine digits */
+}
+
+/* A third of the trace, in two dimensions too: the third axis is there, with the stress that it has. */
+static void judge_pressure(struct check_run *run, const char *out, const char *what)
+{
+    struct table stress, said;
+    struct worst w = WORST_NONE;
+    if (!check_table(run, out, "viscosity.csv", "pressure", what, &said))
         return;
-    table_free(&temperatures);
-    check_error(run, INVARIANT, what, w.measured, w.expected, w.error, 1e-7, "%s: row %zu says %s, the mean of the table of temperatures", what, w.at + 1,
-                compare(&w));       /* written with nine digits */
+    if (check_table(run, out, "stress.csv", "contact_normal_xx,contact_normal_yy,contact_normal_zz,contact_tangential_xx,contact_tangential_yy,contact_tangential_zz,"
+                    "lubrication_xx,lubrication_yy,lubrication_zz,drag_xx,drag_yy,drag_zz", what, &stress)) {
+        for (size_t r = 0; r < said.rows && r < stress.rows; r++) {
+            double sum = 0.0, size = 0.0;
+            for (size_t k = 0; k < 12; k++) {
+                sum -= table_at(&stress, r, k) / 3.0;
+                size += fabs(table_at(&stress, r, k));
+            }
+            worst_see(&w, table_at(&said, r, 0), sum, size, r);
+        }
+        table_free(&stress);
+        check_error(run, INVARIANT, what, w.measured, w.expected, w.error, run->gate_case->tolerance, "%s: row %zu says %s; minus a third of the trace of its own "
+                    "stresses is that", what, w.at + 1, compare(&w));
+    }
+    table_free(&said);
 }
 
 /* No force across the plane, so none in the stress, of whatever origin: its third row and column, but for its corner, are exactly zero. */
@@ -208,7 +233,13 @@ static void judge_tables(struct check_run *run, const char *name, const struct m
     judge_means(run, out, "temperature.csv", "time,T_x,T_y,T_z,T", HALF_SUM, what);
     snprintf(what, sizeof what, "%s: temperature.csv: W", name);
     judge_means(run, out, "temperature.csv", "time,W_x,W_y,W_z,W", SUM, what);
-    snprintf(what, sizeof what, "%s: averages.csv: T, W", name);
+    snprintf(what, sizeof what, "%s: temperature.csv: T by species", name);       /* there are as many of each */
+    judge_means(run, out, "temperature.csv", "time,T_small,T_large,T_z,T", HALF_SUM, what);
+    snprintf(what, sizeof what, "%s: temperature.csv: W by species", name);
+    judge_means(run, out, "temperature.csv", "time,W_small,W_large,W_x,W", HALF_SUM, what);
+    snprintf(what, sizeof what, "%s: viscosity.csv: pressure", name);
+    judge_pressure(run, out, what);
+    snprintf(what, sizeof what, "%s: averages.csv: T, W, pressure", name);
     judge_averages(run, out, what);
     snprintf(what, sizeof what, "%s: velocity_correlation.csv: integral", name);
     judge_means(run, out, "velocity_correlation.csv", "lag,c_x,c_y,c_z,integral", TRAPEZOIDS, what);
@@ -240,6 +271,7 @@ void check_flat_dynamics(struct check_run *run)
         scene_set(scene, "output.temperature", json_pack("{si}", "every", 3));
         scene_set(scene, "output.averages", json_pack("{si}", "every", 3));
         scene_set(scene, "output.stress", json_pack("{si}", "every", 3));
+        scene_set(scene, "output.viscosity", json_pack("{si}", "every", 3));
         scene_set(scene, "output.pair_distribution", json_pack("{si sf si s{sf si} s{sf sf si}}", "every", 3, "range", 5.0, "bins", 10, "near", "gap", 0.4,
                                                                "bins", 8, "plane", "range", 4.0, "half_width", 0.7, "bins", 8));
         scene_set(scene, "output.displacement", json_pack("{si si}", "every", 3, "levels", 1));

@@ -8,6 +8,7 @@
  */
 #include "noise.h"
 
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,7 +42,7 @@ static bool ask(struct check_run *run, const json_t *how, size_t number, struct 
     struct state_row *row = calloc(spheres, sizeof *row);
     char out[PATH_LENGTH], name[32];
     double *draw = NULL;
-    scene_set(scene, "seed", json_integer((json_int_t)run->seed + (json_int_t)scene_number(how, "seed", 0)));
+    scene_set(scene, "seed", json_integer((json_int_t)(uint32_t)(run->seed + (uint32_t)scene_number(how, "seed", 0))));
     scene_set(scene, "realisation", json_integer((json_int_t)scene_number(how, "realisation", 0)));
     snprintf(name, sizeof name, "ask-%zu", number + 1);
     const bool read = row && model_read(run, scene, &m);

@@ -111,10 +111,23 @@ static void try_lean(struct check_run *run)
     judge_films(run, &t, scene);
 }
 
+/* Two spheres far from each other that face their own images along x: a film that resists spins only, and makes noise only for them. */
+static void try_own(struct check_run *run)
+{
+    json_t *scene = json_deep_copy(run->gate_case->scene), *lengths = json_deep_copy(scene_get(scene, "box.lengths"));
+    const double edge = 0.5 * scene_number(run->gate_case->parameters, "edge", NAN);
+    struct films t = { .place = "own", .how_many = "own", .watched = { { 4, "torque about y" }, { 5, "torque about z" }, { 10, "torque on the second" } },
+                       .x = { { 0.3, 1.0, 1.0 }, { 0.9, 5.5, 5.0 } } };
+    json_array_set_new(lengths, 0, json_real(edge));
+    scene_set(scene, "box.lengths", lengths);
+    judge_films(run, &t, scene);
+}
+
 void check_noise_images(struct check_run *run)
 {
     for (int axis = 0; axis < 3; axis++)
         for (int other = -1; other <= 1; other++)
             try_place(run, axis, 0.5 * other);
     try_lean(run);
+    try_own(run);
 }

@@ -15,6 +15,19 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Where the drag has no torque its noise has none. */
+static void judge_no_torque(struct check_run *run, const double *draw, size_t draws, int part)
+{
+    double largest = 0.0;
+    char name[64];
+    for (size_t t = 0; t < draws; t++)
+        for (int c = 0; c < 3; c++)
+            largest = fmax(largest, fabs(draw[12 * t + (size_t)(3 * part + c)]));
+    snprintf(name, sizeof name, "no torque on sphere %d", part / 2 + 1);
+    check_error(run, INVARIANT, name, largest, 0.0, largest, run->gate_case->tolerance, "%s: noise turns it by up to %.4g, in units of the root of 2 kT/dt, "
+                "though the drag, whose fluctuation it is, has no torque", name, largest);
+}
+
 void check_uniform(struct check_run *run)
 {
     struct model m;
@@ -33,6 +46,10 @@ void check_uniform(struct check_run *run)
     if (check_ask(run, "draws", &q, out))
         draw = noise_draws(run, out, "noise_drag_noise.npy", draws, &f, sqrt(2.0 * kT / dt));
     for (int part = 0; part < 4 && draw; part++) {
+        if (part % 2 && !m.drag_torque) {
+            judge_no_torque(run, draw, draws, part);
+            continue;
+        }
         const double a = m.radius[part / 2], friction = part % 2 ? 8.0 * M_PI * m.viscosity * a * a * a : 6.0 * M_PI * m.viscosity * a;
         double low = INFINITY, high = -INFINITY;
         for (size_t t = 0; t < draws; t++)

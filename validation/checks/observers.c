@@ -23,11 +23,28 @@
 double film_radius(const struct film *f, size_t i) { return f->m.radius[f->row[i].species - 1]; }
 double film_mass(const struct film *f, size_t i) { return 4.0 / 3.0 * M_PI * f->m.density[f->row[i].species - 1] * gsl_pow_3(film_radius(f, i)); }
 
-/* Velocity and spin without those of the flow. */
-void film_peculiar(const struct film *f, const struct track_point *p, double c[3], double w[3])
+/* The flow of each frame, and its integral from time 0 on. */
+static bool find_flow(struct film *f)
 {
-    double G[3][3];
-    memcpy(G, f->m.gradient, sizeof G);
+    double way;
+    f->flow = calloc(f->frames, sizeof *f->flow);
+    f->strain = calloc(f->frames, sizeof *f->strain);
+    for (size_t s = 0; f->flow && f->strain && s < f->frames; s++) {
+        const double time = f->begin + (double)s * f->every * f->dt;
+        memcpy(f->flow[s], f->m.gradient, sizeof f->m.gradient);
+        for (int k = 0; k < 9; k++)
+            f->strain[s][k / 3][k % 3] = f->m.gradient[k / 3][k % 3] * time;
+        if (f->stages) {
+            theory_driven_flow(f->stage, f->stages, time, f->flow[s], &way);
+            stages_strain(f->stage, f->stages, time, f->strain[s]);
+        }
+    }
+    return f->flow && f->strain;
+}
+
+void film_peculiar(const struct film *f, size_t frame, const struct track_point *p, double c[3], double w[3])
+{
+    double (*G)[3] = f->flow[frame];
     apply(G, p->x, c);
     for (int k = 0; k < 3; k++) {
         c[k] = p->u[k] - c[k];
@@ -40,6 +57,10 @@ static void find_axes(struct film *f)
     double fastest = 0.0;
     for (int c = 0; c < 3; c++)
         f->axis[c] = c;
+    if (f->stages) {
+        const struct theory_rate *first = &f->stage[0].shear[0];
+        f->axis[0] = first->flow, f->axis[1] = first->gradient, f->axis[2] = 3 - first->flow - first->gradient;
+    }
     for (int c = 0; c < 9; c++)
         if (fabs(f->m.gradient[c / 3][c % 3]) > fastest) {
             fastest = fabs(f->m.gradient[c / 3][c % 3]);
@@ -61,35 +82,46 @@ void film_stress_columns(const struct film *f, const char *origin, char columns[
 
 bool film_driven(const struct film *f, size_t i) { return f->m.driven[f->row[i].species - 1]; }
 
-/* All pairs of a frame, whose cell is that of its time; two driven spheres are no pair. */
-static bool find_pairs(struct film *f, size_t frame)
+int film_parts(const struct film *f, const char *part[FILM_PARTS])
 {
-    struct model now;
-    json_t *scene = json_deep_copy(f->scene);
-    double inverse[3][3];
+    const struct { const char *name; bool there; } all[FILM_PARTS] = { { "contact_normal", f->m.has_contact }, { "contact_tangential", f->m.contact.friction > 0.0 },
+        { "repulsion", scene_get(f->scene, "forces.repulsion") != NULL }, { "lubrication", f->m.has_lubrication }, { "drag", f->m.has_drag } };
+    int count = 0;
+    for (int k = 0; k < FILM_PARTS; k++)
+        if (all[k].there)
+            part[count++] = all[k].name;
+    return count;
+}
+
+/* All pairs of a frame, whose cell is that of its time; of the two images of a sphere that face each other one. */
+static void find_pairs(struct film *f, size_t frame)
+{
+    double cell[3][3], inverse[3][3];
     size_t room = 0;
-    scene_set(scene, "start.time", json_real(f->begin + (double)frame * f->every * f->dt));
-    bool good = model_read(f->run, scene, &now);
-    json_decref(scene);
-    for (int v = 0; v < 3; v++) {
-        cross(now.cell[(v + 1) % 3], now.cell[(v + 2) % 3], inverse[v]);
+    for (int v = 0; v < 3; v++) {           /* the cell of that time: each edge is carried along */
+        apply(f->strain[frame], f->start[v], cell[v]);
         for (int c = 0; c < 3; c++)
-            inverse[v][c] /= now.volume;
+            cell[v][c] += f->start[v][c];
     }
-    for (size_t j = 1; good && j < f->count; j++)
-        for (size_t i = 0; i < j; i++) {
+    for (int v = 0; v < 3; v++) {
+        cross(cell[(v + 1) % 3], cell[(v + 2) % 3], inverse[v]);
+        for (int c = 0; c < 3; c++)
+            inverse[v][c] /= f->m.volume;
+    }
+    for (size_t j = 0; j < f->count; j++)
+        for (size_t i = 0; i <= j; i++) {
             const double *a = track_at(&f->track, frame, i)->x, *b = track_at(&f->track, frame, j)->x, d[3] = { b[0] - a[0], b[1] - a[1], b[2] - a[2] };
             double share[3];
             apply(inverse, d, share);
-            for (int image = 0; image < 125; image++) {
+            for (int image = i == j ? 63 : 0; image < 125; image++) {           /* the 62nd is itself */
                 const int step[3] = { image % 5 - 2, image / 5 % 5 - 2, image / 25 - 2 };
-                struct near_pair p = { .i = i, .j = j };
+                struct near_pair p = { .i = i, .j = j, .own = i == j, .told = film_driven(f, i) && film_driven(f, j) };
                 for (int v = 0; v < 3; v++)
                     for (int c = 0; c < 3; c++)
-                        p.n[c] += (share[v] - round(share[v]) + step[v]) * now.cell[v][c];
+                        p.n[c] += (share[v] - round(share[v]) + step[v]) * cell[v][c];
                 p.distance = norm(p.n);
                 p.gap = p.distance - film_radius(f, i) - film_radius(f, j);
-                if (p.distance >= f->range || (film_driven(f, i) && film_driven(f, j)))
+                if (p.distance >= f->range)
                     continue;
                 for (int c = 0; c < 3; c++)
                     p.n[c] /= p.distance;
@@ -98,7 +130,6 @@ static bool find_pairs(struct film *f, size_t frame)
                 f->near[frame][f->nears[frame]++] = p;
             }
         }
-    return good;
 }
 
 /* False where the case does not ask for the table, where the candidate has not written it (skipped) or it cannot be read (recorded). */
@@ -129,8 +160,8 @@ void film_judge(const struct film *f, const char *what, const struct worst *w)
 static bool record(struct film *f, const char *name, bool with_tables, struct track *track)
 {
     json_t *scene = json_deep_copy(f->scene);
-    int at[128];
-    for (size_t k = 0; k < f->frames; k++)
+    int *at = calloc(f->frames + 1, sizeof *at);
+    for (size_t k = 0; at && k < f->frames; k++)
         at[k] = (int)k * f->every;
     if (with_tables) {
         json_t *tables = json_deep_copy(json_object_get(f->run->gate_case->parameters, "tables")), *one;
@@ -143,7 +174,8 @@ static bool record(struct film *f, const char *name, bool with_tables, struct tr
         }
         json_decref(tables);
     }
-    const bool good = track_ask(f->run, name, scene, f->row, f->count, at, f->frames, track);
+    const bool good = at && track_ask(f->run, name, scene, f->row, f->count, at, f->frames, track);
+    free(at);
     char folder[PATH_LENGTH];
     path_join(folder, f->run->work, name);
     if (with_tables)
@@ -171,15 +203,19 @@ void check_observers(struct check_run *run)
     const json_t *parameters = run->gate_case->parameters;
     struct film f = { .run = run, .scene = json_deep_copy(run->gate_case->scene), .frames = (size_t)scene_number(parameters, "frames", 0),
                       .every = (int)scene_number(parameters, "every", 1), .range = scene_number(parameters, "range", NAN) };
-    double counts[2];
-    size_t two;
+    double counts[4], packed[4];
+    size_t kinds, smaller;
     char why[WHY_LENGTH] = "the gate is out of memory";
-    parameter_list(parameters, "spheres", counts, &two, 2);
-    if (!model_read(run, f.scene, &f.m) || f.frames > 128)
+    struct packing_species kind[4];
+    parameter_list(parameters, "spheres", counts, &kinds, 4);
+    parameter_list(parameters, "packed_as", packed, &smaller, 4);           /* radii that do not overlap at the start, if other than those of the scene */
+    if (!model_read(run, f.scene, &f.m) || f.m.species != kinds)
         return;
-    const struct packing_species kind[2] = { { f.m.radius[0], (int)counts[0] }, { f.m.radius[1], (int)counts[1] } };
-    const double edge = packing_edge(kind, 2, scene_number(parameters, "phi", NAN));
-    f.count = (size_t)(kind[0].count + kind[1].count);
+    for (size_t k = 0; k < kinds; k++) {
+        kind[k] = (struct packing_species){ k < smaller ? packed[k] : f.m.radius[k], (int)counts[k] };
+        f.count += (size_t)counts[k];
+    }
+    const double edge = packing_edge(kind, (int)kinds, scene_number(parameters, "phi", NAN));
     f.dt = scene_number(f.scene, "dynamics.verlet.dt", NAN);
     f.kT = scene_number(f.scene, "fluid.kT", NAN);
     f.begin = scene_number(f.scene, "start.time", 0.0);
@@ -189,15 +225,19 @@ void check_observers(struct check_run *run)
     scene_set(f.scene, "box.lengths", json_pack("[fff]", edge, edge, edge));
     scene_set(f.scene, "seed", json_integer(run->seed));
     scene_set(f.scene, "output.stress", json_pack("{si}", "every", f.every));
-    bool good = f.row && f.near && f.nears && model_read(run, f.scene, &f.m) && packing_make(kind, 2, edge, 0.0, run->seed, f.row, why);
+    bool good = f.row && f.near && f.nears && model_read(run, f.scene, &f.m) && packing_make(kind, (int)kinds, edge, 0.0, run->seed, f.row, why);
     if (!good)
         check_garbage(run, why);
+    for (int v = 0; v < 3; v++)
+        f.start[v][v] = edge;
+    f.stages = stages_read(scene_get(f.scene, "stages"), f.stage);
     find_axes(&f);
+    good = good && find_flow(&f);
     for (size_t i = 0; good && i < f.count; i++) {      /* with the flow */
         struct track_point at = { .u = { 0 } };
         double c[3], w[3];
         memcpy(at.x, f.row[i].x, sizeof at.x);
-        film_peculiar(&f, &at, c, w);
+        film_peculiar(&f, 0, &at, c, w);
         for (int k = 0; k < 3; k++) {
             f.row[i].u[k] = -c[k];
             f.row[i].w[k] = -w[k];
@@ -205,12 +245,13 @@ void check_observers(struct check_run *run)
     }
     good = good && record(&f, "watched", true, &f.track);
     for (size_t s = 0; good && s < f.frames; s++)
-        good = find_pairs(&f, s);
+        find_pairs(&f, s);
     if (good) {
         film_judge_driven(&f);
         film_judge_temperature(&f);
         film_judge_contacts(&f);
         film_judge_viscosity(&f);
+        film_judge_kinetic(&f);
         film_judge_brownian(&f);
         film_judge_lags(&f);
         film_judge_distribution(&f);
@@ -225,6 +266,8 @@ void check_observers(struct check_run *run)
         free(f.near[s]);
     free(f.near);
     free(f.nears);
+    free(f.flow);
+    free(f.strain);
     free(f.row);
     json_decref(f.scene);
 }

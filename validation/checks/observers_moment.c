@@ -20,7 +20,7 @@ void film_temperatures(const struct film *f, size_t frame, int species, double T
         double c[3], w[3];
         if ((species && f->row[i].species != species) || film_driven(f, i))
             continue;
-        film_peculiar(f, track_at(&f->track, frame, i), c, w);
+        film_peculiar(f, frame, track_at(&f->track, frame, i), c, w);
         of += 1.0;
         for (int k = 0; k < 3; k++) {
             T[k] += film_mass(f, i) * c[k] * c[k];
@@ -46,11 +46,13 @@ void film_judge_driven(const struct film *f)
                 worst_see_vector(&w, p->x, x, 3, film_radius(f, i), i);
                 worst_see_vector(&w, p->u, f->m.velocity[kind], 3, film_radius(f, i), i);
                 worst_see_vector(&w, p->w, f->m.spin[kind], 3, 1.0, i);
+                for (int k = 0; k < 3 && isfinite(p->turn[0]); k++)
+                    worst_see(&w, p->turn[k], f->m.spin[kind][k] * (double)s * f->every * f->dt, 1.0, i);
             }
         }
     if (w.error >= 0.0)
         check_error(f->run, MODEL, "driven spheres", w.measured, w.expected, w.error, f->run->gate_case->tolerance, "driven sphere %zu does not keep the motion that the "
-                    "scene gives it: place, velocity or spin is %s", w.at + 1, compare(&w));
+                    "scene gives it: place, velocity, spin or angle is %s", w.at + 1, compare(&w));
 }
 
 static bool in_range(const struct film *f, const struct near_pair *p)
@@ -67,13 +69,13 @@ static double spins_of_neighbours(const struct film *f, size_t frame)
         double c[3], own[3], other[3];
         for (size_t k = 0; k < f->nears[frame]; k++) {
             const struct near_pair *p = &f->near[frame][k];
-            if ((p->i == i || p->j == i) && in_range(f, p) && (!nearest || p->gap < nearest->gap))
+            if ((p->i == i || p->j == i) && !p->told && in_range(f, p) && (!nearest || p->gap < nearest->gap))
                 nearest = p;
         }
         if (!nearest)
             continue;
-        film_peculiar(f, track_at(&f->track, frame, i), c, own);
-        film_peculiar(f, track_at(&f->track, frame, nearest->i == i ? nearest->j : nearest->i), c, other);
+        film_peculiar(f, frame, track_at(&f->track, frame, i), c, own);
+        film_peculiar(f, frame, track_at(&f->track, frame, nearest->i == i ? nearest->j : nearest->i), c, other);
         together += dot(own, other);
         alone += dot(own, own);
     }
@@ -83,27 +85,30 @@ static double spins_of_neighbours(const struct film *f, size_t frame)
 void film_judge_temperature(const struct film *f)
 {
     struct table t;
-    char columns[200];
+    char columns[400] = "step,T_x,T_y,T_z,T,W_x,W_y,W_z,W,spin_neighbours";
     struct worst w = WORST_NONE, spins = WORST_NONE;
-    const char *one = json_string_value(scene_get(json_array_get(scene_get(f->scene, "species"), 0), "name"));
-    const char *two = json_string_value(scene_get(json_array_get(scene_get(f->scene, "species"), 1), "name"));
-    snprintf(columns, sizeof columns, "step,T_x,T_y,T_z,T,W_x,W_y,W_z,W,T_%s,W_%s,T_%s,W_%s,spin_neighbours", one, one, two, two);
+    for (size_t k = 0; k < f->m.species; k++) {
+        const char *name = json_string_value(scene_get(json_array_get(scene_get(f->scene, "species"), k), "name"));
+        const size_t used = strlen(columns);
+        snprintf(columns + used, sizeof columns - used, ",T_%s,W_%s", name, name);
+    }
     if (!film_table(f, "temperature.csv", columns, &t))
         return;
     for (size_t r = 0; r < t.rows; r++) {
         const size_t frame = film_frame(f, &t, r);
-        double T[3][6];
+        double T[6];
         if (frame == f->frames)
             continue;
-        for (int k = 0; k < 3; k++)
-            film_temperatures(f, frame, k, T[k]);
-        for (size_t k = 0; k < 3; k++) {
-            worst_see(&w, table_at(&t, r, 1 + k), T[0][k], f->kT, r);
-            worst_see(&w, table_at(&t, r, 5 + k), T[0][3 + k], f->kT, r);
+        for (size_t k = 0; k <= f->m.species; k++) {        /* of all first, then of each */
+            film_temperatures(f, frame, (int)k, T);
+            for (size_t axis = 0; axis < 3 && k == 0; axis++) {
+                worst_see(&w, table_at(&t, r, 1 + axis), T[axis], f->kT, r);
+                worst_see(&w, table_at(&t, r, 5 + axis), T[3 + axis], f->kT, r);
+            }
             for (size_t part = 0; part < 2; part++)
-                worst_see(&w, table_at(&t, r, k ? 7 + 2 * k + part : 4 + 4 * part), (T[k][3 * part] + T[k][3 * part + 1] + T[k][3 * part + 2]) / 3.0, f->kT, r);
+                worst_see(&w, table_at(&t, r, k ? 8 + 2 * k + part : 4 + 4 * part), (T[3 * part] + T[3 * part + 1] + T[3 * part + 2]) / 3.0, f->kT, r);
         }
-        worst_see(&spins, table_at(&t, r, 13), spins_of_neighbours(f, frame), 1.0, r);
+        worst_see(&spins, table_at(&t, r, 9), spins_of_neighbours(f, frame), 1.0, r);
     }
     table_free(&t);
     film_judge(f, "temperature.csv", &w);
@@ -124,8 +129,8 @@ static void count_contacts(const struct film *f, size_t frame, double out[4])
         touching = near = 0.0;
         for (size_t k = 0; k < f->nears[frame]; k++) {
             const struct near_pair *p = &f->near[frame][k];
-            near += in_range(f, p);
-            if (p->gap >= 0 || gone[p->i] || gone[p->j])
+            near += in_range(f, p) && !p->told;
+            if (p->told || p->gap >= 0 || gone[p->i] || gone[p->j])
                 continue;
             touches[p->i]++;
             touches[p->j]++;
@@ -171,38 +176,70 @@ void film_judge_contacts(const struct film *f)
 
 void film_judge_viscosity(const struct film *f)
 {
-    static const char *const parts[4] = { "contact_normal", "contact_tangential", "lubrication", "drag" };
-    struct table t, stress[4];
+    const char *part[FILM_PARTS];
+    const size_t parts = (size_t)film_parts(f, part);
+    struct table t, stress[FILM_PARTS];
     struct worst w = WORST_NONE, differences = WORST_NONE;
-    const double unit = f->m.viscosity * film_rate(f);
-    if (!film_table(f, "viscosity.csv", "step,eta_contact_normal,eta_contact_tangential,eta_lubrication,eta_drag,eta_r,N1,N2,pressure", &t))
+    const double unit = f->stages ? 1.0 : f->m.viscosity * film_rate(f), solvent = f->stages ? 0.0 : 1.0;     /* in stages stresses, not viscosities */
+    char columns[400];
+    snprintf(columns, sizeof columns, "step,%s,N1,N2,pressure", f->stages ? "shear" : "eta_r");
+    for (size_t k = 0; k < parts; k++)
+        snprintf(columns + strlen(columns), sizeof columns - strlen(columns), ",%s_%s", f->stages ? "shear" : "eta", part[k]);
+    if (!film_table(f, "viscosity.csv", columns, &t))
         return;
-    int opened = 0;
-    for (; opened < 4; opened++) {
-        char columns[400];
-        film_stress_columns(f, parts[opened], columns);
+    size_t opened = 0;
+    for (; opened < parts; opened++) {
+        film_stress_columns(f, part[opened], columns);
         if (!film_table(f, "stress.csv", columns, &stress[opened]))
             break;
     }
-    for (size_t r = 0; opened == 4 && r < t.rows && r < stress[0].rows; r++) {
+    for (size_t r = 0; opened == parts && r < t.rows && r < stress[0].rows; r++) {
         double diagonal[3] = { 0 }, shear = 0.0;
-        for (size_t k = 0; k < 4; k++) {
+        for (size_t k = 0; k < parts; k++) {
             const double own = 0.5 * (table_at(&stress[k], r, 3) + table_at(&stress[k], r, 4));
-            worst_see(&w, table_at(&t, r, 1 + k), own / unit, 1.0, r);
+            worst_see(&w, table_at(&t, r, 5 + k), own / unit, 1.0, r);
             shear += own;
             for (size_t c = 0; c < 3; c++)
                 diagonal[c] += table_at(&stress[k], r, c);
         }
-        worst_see(&w, table_at(&t, r, 5), 1.0 + shear / unit, 1.0, r);
-        worst_see(&differences, table_at(&t, r, 6), diagonal[0] - diagonal[1], fabs(unit), r);
-        worst_see(&differences, table_at(&t, r, 7), diagonal[1] - diagonal[2], fabs(unit), r);
-        worst_see(&differences, table_at(&t, r, 8), -(diagonal[0] + diagonal[1] + diagonal[2]) / 3.0, fabs(unit), r);
+        worst_see(&w, table_at(&t, r, 1), solvent + shear / unit, 1.0, r);
+        worst_see(&differences, table_at(&t, r, 2), diagonal[0] - diagonal[1], fabs(unit), r);
+        worst_see(&differences, table_at(&t, r, 3), diagonal[1] - diagonal[2], fabs(unit), r);
+        worst_see(&differences, table_at(&t, r, 4), -(diagonal[0] + diagonal[1] + diagonal[2]) / 3.0, fabs(unit), r);
     }
-    for (int k = 0; k < opened; k++)
+    for (size_t k = 0; k < opened; k++)
         table_free(&stress[k]);
     table_free(&t);
     film_judge(f, "viscosity.csv: parts and their sum", &w);
     film_judge(f, "viscosity.csv: N1, N2, pressure", &differences);
+}
+
+/* -(1/V) sum of m c (x) c over the free spheres, c without the flow of that moment. */
+void film_judge_kinetic(const struct film *f)
+{
+    struct table t;
+    struct worst worst = WORST_NONE;
+    char columns[400], with_step[440];
+    film_stress_columns(f, "kinetic", columns);
+    snprintf(with_step, sizeof with_step, "step,%s", columns);
+    if (!film_table(f, "stress.csv", with_step, &t))
+        return;
+    for (size_t r = 0; r < t.rows; r++) {
+        static const int pair[5][2] = { { 0, 0 }, { 1, 1 }, { 2, 2 }, { 0, 1 }, { 1, 0 } };
+        const size_t frame = film_frame(f, &t, r);
+        double S[5] = { 0 }, c[3], w[3];
+        if (frame == f->frames)
+            continue;
+        for (size_t i = 0; i < f->count; i++) {
+            film_peculiar(f, frame, track_at(&f->track, frame, i), c, w);
+            for (int k = 0; k < 5 && !film_driven(f, i); k++)
+                S[k] -= film_mass(f, i) * c[f->axis[pair[k][0]]] * c[f->axis[pair[k][1]]] / f->m.volume;
+        }
+        for (size_t k = 0; k < 5; k++)
+            worst_see(&worst, table_at(&t, r, 1 + k), S[k], (double)f->count * f->kT / f->m.volume, r);
+    }
+    table_free(&t);
+    film_judge(f, "stress.csv: kinetic", &worst);
 }
 
 double film_depth(const struct film *f) { return sqrt(M_PI * f->kT / (2.0 * f->m.contact.normal_stiffness)); }

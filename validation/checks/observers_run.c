@@ -14,7 +14,7 @@
 /* --- over the run --- */
 
 /* Mean of a product over the particles of a species and the origins of a lag: all of them to 16 samples, every 2^level-th beyond. */
-typedef void product_of(const struct film *f, const struct track_point *old, const struct track_point *now, double duration, double out[6]);
+typedef void product_of(const struct film *f, size_t i, size_t then, size_t now, double out[6]);
 
 static double correlate(const struct film *f, size_t lag, int species, product_of *product, double mean[6])
 {
@@ -27,7 +27,7 @@ static double correlate(const struct film *f, size_t lag, int species, product_o
         for (size_t i = 0; i < f->count; i++) {
             if (f->row[i].species != species)
                 continue;
-            product(f, track_at(&f->track, s, i), track_at(&f->track, s + lag, i), (double)lag * f->every * f->dt, one);
+            product(f, i, s, s + lag, one);
             samples += 1.0;
             for (int k = 0; k < 6; k++)
                 mean[k] += one[k];
@@ -37,24 +37,24 @@ static double correlate(const struct film *f, size_t lag, int species, product_o
     return samples;
 }
 
-static void displaced(const struct film *f, const struct track_point *old, const struct track_point *now, double duration, double out[6])
+static void displaced(const struct film *f, size_t i, size_t then, size_t now, double out[6])
 {
+    const struct track_point *a = track_at(&f->track, then, i), *b = track_at(&f->track, now, i);
+    double S[3][3], carried[3];
+    for (int k = 0; k < 9; k++)
+        S[k / 3][k % 3] = f->strain[now][k / 3][k % 3] - f->strain[then][k / 3][k % 3];
+    apply(S, a->x, carried);
     for (int k = 0; k < 3; k++) {
-        double carried = old->x[k];
-        for (int l = 0; l < 3; l++)
-            carried += f->m.gradient[k][l] * duration * old->x[l];
-        const double vorticity = f->m.gradient[(k + 2) % 3][(k + 1) % 3] - f->m.gradient[(k + 1) % 3][(k + 2) % 3];
-        out[k] = gsl_pow_2(now->x[k] - carried);
-        out[3 + k] = gsl_pow_2(now->turn[k] - old->turn[k] - 0.5 * vorticity * duration);
+        out[k] = gsl_pow_2(b->x[k] - a->x[k] - carried[k]);
+        out[3 + k] = gsl_pow_2(b->turn[k] - a->turn[k] - 0.5 * (S[(k + 2) % 3][(k + 1) % 3] - S[(k + 1) % 3][(k + 2) % 3]));
     }
 }
 
-static void remembered(const struct film *f, const struct track_point *old, const struct track_point *now, double duration, double out[6])
+static void remembered(const struct film *f, size_t i, size_t then, size_t now, double out[6])
 {
     double c[2][3], w[2][3];
-    (void)duration;
-    film_peculiar(f, old, c[0], w[0]);
-    film_peculiar(f, now, c[1], w[1]);
+    film_peculiar(f, then, track_at(&f->track, then, i), c[0], w[0]);
+    film_peculiar(f, now, track_at(&f->track, now, i), c[1], w[1]);
     for (int k = 0; k < 3; k++) {
         out[k] = c[0][k] * c[1][k];
         out[3 + k] = w[0][k] * w[1][k];
@@ -75,15 +75,31 @@ static double derived(const struct table *t, size_t r, bool slope, double *integ
     return slope ? 0.5 * (now - before) / step : *integral;
 }
 
+/* The longest lag of a table in frames: 16 lags at one frame, then 8 at every doubling of it, as long as the run has two frames so far apart. */
+static double longest_lag(const struct film *f, const char *file)
+{
+    char key[96];
+    snprintf(key, sizeof key, "tables.%.*s.levels", (int)strcspn(file, "."), file);
+    const double levels = scene_number(f->run->gate_case->parameters, key, NAN);
+    double longest = 0.0, width = 1.0;
+    for (int level = 0; level < levels; level++, width *= 2.0)
+        for (double lag = 1.0; lag <= 16.0; lag += 1.0)
+            longest = lag * width < (double)f->frames ? fmax(longest, lag * width) : longest;
+    return longest;
+}
+
 static void judge_lags(const struct film *f, const char *file, const char *columns, bool slope, product_of *product)
 {
     struct table t;
     struct worst w = WORST_NONE, samples = WORST_NONE, last = WORST_NONE;
-    double integral = 0.0, largest = 0.0;
+    double integral = 0.0, largest = 0.0, lags = 0.0;
     if (!film_table(f, file, columns, &t))
         return;
     for (size_t r = 0; r < t.rows; r++)
         largest = fmax(largest, fabs(table_at(&t, r, 9)));
+    for (size_t r = 0; r < t.rows; r++)
+        lags = fmax(lags, round(table_at(&t, r, 0) / (f->every * f->dt)));
+    worst_see(&samples, lags, longest_lag(f, file), 1.0, t.rows - 1);
     for (size_t r = 0; r < t.rows; r++) {
         worst_see(&last, table_at(&t, r, 9), derived(&t, r, slope, &integral), largest, r);
         double mean[6], scale[2] = { 0 };
@@ -103,26 +119,30 @@ static void judge_lags(const struct film *f, const char *file, const char *colum
     film_judge(f, what, &last);
 }
 
-/* The line at the end of displacement.csv: D_long, half the least-squares slope of each axis over the upper half of the lags. */
+/* The line at the end of displacement.csv: D_short, the largest D of its rows; D_long, half the least-squares slope of each axis over the upper half of the lags. */
 static void judge_late_diffusion(const struct film *f)
 {
     char path[PATH_LENGTH], line[1024], why[WHY_LENGTH];
     struct table t;
-    struct worst w = WORST_NONE;
+    struct worst w = WORST_NONE, largest = WORST_NONE;
     path_join(path, f->out, "displacement.csv");
     FILE *in = fopen(path, "r");
-    if (!in || !table_read(path, "lag,species,msd_x,msd_y,msd_z", &t, why)) {
+    if (!in || !table_read(path, "lag,species,msd_x,msd_y,msd_z,D", &t, why)) {
         if (in)
             fclose(in);
         return;
     }
     while (fgets(line, sizeof line, in)) {
         int species;
-        double brief, said[3], longest = 0.0;
+        double brief, said[3], longest = 0.0, most = -INFINITY;
         if (sscanf(line, "# species %d: D_short %lf D_long %lf %lf %lf", &species, &brief, &said[0], &said[1], &said[2]) != 5)
             continue;
         for (size_t r = 0; r < t.rows; r++)
-            longest = table_at(&t, r, 1) == species ? fmax(longest, table_at(&t, r, 0)) : longest;
+            if (table_at(&t, r, 1) == species) {
+                longest = fmax(longest, table_at(&t, r, 0));
+                most = fmax(most, table_at(&t, r, 5));
+            }
+        worst_see(&largest, brief, most, fabs(most), (size_t)species);
         for (size_t k = 0; k < 3; k++) {
             double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
             for (size_t r = 0; r < t.rows; r++) {
@@ -137,6 +157,9 @@ static void judge_late_diffusion(const struct film *f)
     }
     fclose(in);
     table_free(&t);
+    if (largest.error >= 0.0)
+        check_error(f->run, INVARIANT, "displacement.csv: D_short", largest.measured, largest.expected, largest.error, 1e-8, "displacement.csv: D_short of species %zu is "
+                    "%s; the largest D of its own rows is that", largest.at, compare(&largest));       /* written with nine digits */
     if (w.error >= 0.0)
         check_error(f->run, INVARIANT, "displacement.csv: D_long", w.measured, w.expected, w.error, 1e-6, "displacement.csv: D_long of species %zu is %s; half the "
                     "slope of its own rows over the upper half of the lags gives that", w.at, compare(&w));
@@ -153,7 +176,7 @@ void film_judge_distribution(const struct film *f)
 {
     struct table t;
     struct worst counts = WORST_NONE, g = WORST_NONE, U = WORST_NONE;
-    double of[2] = { 0 };
+    double of[4] = { 0 };
     if (!film_table(f, "pair_distribution.csv", "kind$,species_a,species_b,low,high,count,g,U$", &t))
         return;
     for (size_t i = 0; i < f->count; i++)
@@ -168,12 +191,12 @@ void film_judge_distribution(const struct film *f)
                 const struct near_pair *p = &f->near[s][k];
                 const int one = f->row[p->i].species, two = f->row[p->j].species;
                 const double at = near ? p->gap : p->distance;
-                found += ((one == a && two == b) || (one == b && two == a)) && at >= low && at < high;
+                found += !p->own && ((one == a && two == b) || (one == b && two == a)) && at >= low && at < high;
             }
         const double pairs = a == b ? 0.5 * of[a - 1] * (of[a - 1] - 1.0) : of[a - 1] * of[b - 1];
         const double ideal = pairs / f->m.volume * 4.0 / 3.0 * M_PI * (gsl_pow_3(touch + high) - gsl_pow_3(touch + low)) * (double)f->frames;
         worst_see(&counts, table_at(&t, r, 5), found, 1.0, r);
-        worst_see(&g, table_at(&t, r, 6), found / ideal, fmax(found / ideal, 1.0), r);
+        worst_see(&g, table_at(&t, r, 6), ideal > 0.0 ? found / ideal : 0.0, fmax(ideal > 0.0 ? found / ideal : 0.0, 1.0), r);
         if (found > 0.0)
             worst_see(&U, strtod(table_word(&t, r, 7), NULL), -f->kT * log(found / ideal), f->kT, r);
     }
@@ -201,7 +224,7 @@ void film_judge_plane(const struct film *f)
                 const struct near_pair *pair = &f->near[s][k];
                 const double r = end * pair->distance, column = floor((r * pair->n[f->axis[0]] + range) / width), row = floor((r * pair->n[f->axis[1]] + range) / width);
                 const size_t at = (size_t)(row * bins + column);
-                if (fabs(r * pair->n[f->axis[2]]) < slab && column >= 0 && column < bins && row >= 0 && row < bins && at < t.rows)
+                if (!pair->own && fabs(r * pair->n[f->axis[2]]) < slab && column >= 0 && column < bins && row >= 0 && row < bins && at < t.rows)
                     found[at] += 1.0;
             }
     const double ideal = N * (N - 1.0) / f->m.volume * width * width * 2.0 * slab * (double)f->frames;
@@ -224,9 +247,10 @@ void film_judge_plane(const struct film *f)
 /* The sum over origins without the kinetic and the noise part, as stress.csv gives them: ff, gg, vv, fg, gf of each of its rows. Null: no table. */
 static double (*total_stress(const struct film *f, size_t *rows))[5]
 {
-    static const char *const parts[4] = { "contact_normal", "contact_tangential", "lubrication", "drag" };
+    const char *parts[FILM_PARTS];
+    const int count = film_parts(f, parts);
     double (*S)[5] = NULL;
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < count; k++) {
         struct table t;
         char columns[400];
         film_stress_columns(f, parts[k], columns);
@@ -365,12 +389,29 @@ static bool series_of(const struct film *f, const char *name, double (*S)[5], do
         const double shear = 0.5 * (S[s][3] + S[s][4]);
         film_temperatures(f, s, 0, T);
         for (size_t k = 0; k < f->nears[s]; k++)
-            touching += f->near[s][k].gap < 0.0;
+            touching += f->near[s][k].gap < 0.0 && !f->near[s][k].told;
         const double value[8] = { shear, 1.0 + shear / (f->m.viscosity * film_rate(f)), S[s][0] - S[s][1], S[s][1] - S[s][2],
                                   -(S[s][0] + S[s][1] + S[s][2]) / 3.0, (T[0] + T[1] + T[2]) / 3.0, (T[3] + T[4] + T[5]) / 3.0, 2.0 * touching / (double)f->count };
         x[s] = value[which];
     }
     return which < 8;
+}
+
+/* The shear stress of one origin, "shear_<origin>"; false: not that, or not as many rows as frames. */
+static bool series_of_origin(const struct film *f, const char *name, double *x)
+{
+    char columns[400];
+    struct table t;
+    if (strncmp(name, "shear_", 6) != 0)
+        return false;
+    film_stress_columns(f, name + 6, columns);
+    if (!film_table(f, "stress.csv", columns, &t))
+        return false;
+    const bool whole = t.rows == f->frames;
+    for (size_t s = 0; s < f->frames && whole; s++)
+        x[s] = 0.5 * (table_at(&t, s, 3) + table_at(&t, s, 4));
+    table_free(&t);
+    return whole;
 }
 
 void film_judge_averages(const struct film *f)
@@ -382,8 +423,15 @@ void film_judge_averages(const struct film *f)
         return;
     double (*S)[5] = total_stress(f, &rows), *x = calloc(f->frames, sizeof *x);
     for (size_t r = 0; r < t.rows && S && rows == f->frames; r++) {
-        if (!series_of(f, table_word(&t, r, 0), S, x))
+        if (!series_of(f, table_word(&t, r, 0), S, x) && !series_of_origin(f, table_word(&t, r, 0), x))
             continue;
+        double low = x[0], high = x[0];
+        for (size_t s = 1; s < f->frames; s++) {
+            low = fmin(low, x[s]);
+            high = fmax(high, x[s]);
+        }
+        if (high - low < 1e-9 * fmax(fabs(low), fabs(high)))
+            continue;                       /* the same each time: what is left is rounding, which has no error bar */
         const size_t first = transient(x, f->frames);
         double mean = 0.0, size = 0.0;
         for (size_t s = first; s < f->frames; s++) {

@@ -4,35 +4,17 @@
  * cell all show here; so does any force that is right alone and wrong in company. The stress of every origin is summed
  * in the same loop, with each pair once.
  */
+#include "crowd.h"
 #include "pair_checks.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { CONTACT, LUBRICATION, DRAG, FORCES };
-enum { CONTACT_NORMAL, CONTACT_TANGENTIAL, LUBRICATION_STRESS, DRAG_STRESS, KINETIC, ORIGINS };
-static const char *const force_name[FORCES] = { "contact", "lubrication", "drag" };
-static const char *const origin_name[ORIGINS] = { "contact_normal", "contact_tangential", "lubrication", "drag", "kinetic" };
+static const char *const force_name[FORCES] = { "contact", "lubrication", "drag", "repulsion", "applied" };
+static const char *const origin_name[ORIGINS] = { "contact_normal", "contact_tangential", "lubrication", "drag", "repulsion", "kinetic" };
 
-struct sphere { struct theory_sphere s; int species; };
-
-struct crowd {
-    struct model m;
-    bool present[FORCES];
-    size_t count;
-    struct sphere *sphere;
-    struct contact_row *history;
-    size_t histories;
-    double (*expected)[FORCES][6], (*scale)[FORCES][2];     /* by sphere */
-    double stress[ORIGINS][9], stress_scale[ORIGINS];
-    size_t pairs, self_pairs;
-};
-
-/* Calls `visit` for every image of j (shift not zero, and one of each opposite two, if j is i) within the longest range. */
-typedef void visitor(struct crowd *c, size_t i, size_t j, const double shift[3], void *data);
-
-static void each_image(struct crowd *c, size_t i, size_t j, double range, visitor *visit, void *data)
+void crowd_each_image(struct crowd *c, size_t i, size_t j, double range, crowd_visitor *visit, void *data)
 {
     double d[3], across[3][3];
     long low[3], high[3];
@@ -59,13 +41,13 @@ static void each_image(struct crowd *c, size_t i, size_t j, double range, visito
             }
 }
 
-static double range_of(const struct crowd *c, size_t i, size_t j)
+double crowd_range(const struct crowd *c, size_t i, size_t j)
 {
-    const double outer = c->present[LUBRICATION] ? c->m.lubrication.outer_gap : 0;
-    return (c->sphere[i].s.radius + c->sphere[j].s.radius) * (1 + 0.5 * outer);
+    const double outer = c->present[LUBRICATION] ? 0.5 * c->m.lubrication.outer_gap : 0;
+    return (c->sphere[i].s.radius + c->sphere[j].s.radius) * (1 + fmax(outer, c->present[REPULSION] ? c->m.repulsion.cutoff * c->m.repulsion.kappa_factor : 0));
 }
 
-static void note_gap(struct crowd *c, size_t i, size_t j, const double shift[3], void *smallest)
+void crowd_note_gap(struct crowd *c, size_t i, size_t j, const double shift[3], void *smallest)
 {
     double r[3];
     for (int k = 0; k < 3; k++)
@@ -80,7 +62,7 @@ static void place(struct crowd *c, gsl_rng *random, double overlap)
     const size_t wanted = c->count;
     c->count = 0;
     for (int tries = 0; c->count < wanted && tries < 200000; tries++) {
-        struct sphere *s = &c->sphere[c->count];
+        struct crowd_sphere *s = &c->sphere[c->count];
         for (int k = 0; k < 3; k++)
             s->s.x[k] = 0;
         for (int v = 0; v < 3; v++) {
@@ -90,21 +72,32 @@ static void place(struct crowd *c, gsl_rng *random, double overlap)
         }
         double smallest = INFINITY;
         for (size_t j = 0; j < c->count && smallest >= -overlap; j++)
-            each_image(c, j, c->count, range_of(c, j, c->count), note_gap, &smallest);
+            crowd_each_image(c, j, c->count, crowd_range(c, j, c->count), crowd_note_gap, &smallest);
         c->count += smallest >= -overlap;
     }
 }
 
-static void note_contact(struct crowd *c, size_t i, size_t j, const double shift[3], void *data)
+static void count_contact(struct crowd *c, size_t i, size_t j, const double shift[3], void *touching)
 {
     double smallest = 0;
-    note_gap(c, i, j, shift, &smallest);
-    if (smallest >= 0)
-        return;
-    const bool back = c->histories % 2;     /* every other contact is listed as (j, i) */
-    struct contact_row *h = &c->history[c->histories++];
-    *h = (struct contact_row){ .i = (int)(back ? j : i) + 1, .j = (int)(back ? i : j) + 1 };
-    random_vector(data, 0.01 * c->sphere[i].s.radius, h->s);
+    crowd_note_gap(c, i, j, shift, &smallest);
+    *(size_t *)touching += smallest < 0;
+}
+
+void crowd_give_histories(struct crowd *c, gsl_rng *random, double length)
+{
+    c->history = calloc(c->count * c->count + 1, sizeof *c->history);
+    for (size_t i = 0; i < c->count; i++)
+        for (size_t j = i + 1; j < c->count; j++) {
+            size_t touching = 0;
+            crowd_each_image(c, i, j, crowd_range(c, i, j), count_contact, &touching);
+            if (touching != 1)
+                continue;               /* contacts.csv names particles: it cannot tell two images of one */
+            const bool back = c->histories % 2;
+            struct contact_row *h = &c->history[c->histories++];
+            *h = (struct contact_row){ .i = (int)(back ? j : i) + 1, .j = (int)(back ? i : j) + 1 };
+            random_vector(random, length * c->sphere[i].s.radius, h->s);
+        }
 }
 
 static void make(struct check_run *run, const json_t *variant, struct crowd *c)
@@ -126,11 +119,8 @@ static void make(struct check_run *run, const json_t *variant, struct crowd *c)
         random_vector(random, drift, c->sphere[k].s.u);
         random_vector(random, drift, c->sphere[k].s.w);
     }
-    c->history = calloc(c->count * c->count + 1, sizeof *c->history);
     if (c->present[CONTACT] && c->m.contact.friction > 0)
-        for (size_t i = 0; i < c->count; i++)
-            for (size_t j = i; j < c->count; j++)
-                each_image(c, i, j, range_of(c, i, j), note_contact, random);
+        crowd_give_histories(c, random, 0.01);
     gsl_rng_free(random);
 }
 
@@ -159,7 +149,7 @@ static void book_pair(struct crowd *c, int force, size_t i, size_t j, const stru
         c->scale[k][force][0] += e->force_scale;
         c->scale[k][force][1] += e->torque_scale;
     }
-    const int origin = force == CONTACT ? CONTACT_NORMAL : LUBRICATION_STRESS;
+    const int origin = force == CONTACT ? CONTACT_NORMAL : force == REPULSION ? REPULSION_STRESS : LUBRICATION_STRESS;
     for (int a = 0; a < 3; a++)
         for (int b = 0; b < 3; b++) {
             const double along = force == CONTACT ? normal * n[a] : f[a];
@@ -171,9 +161,21 @@ static void book_pair(struct crowd *c, int force, size_t i, size_t j, const stru
     c->stress_scale[CONTACT_TANGENTIAL] += e->force_scale * r;
 }
 
+static void expect_repulsion(const struct model *m, const struct pair_state *p, struct expected *e)
+{
+    const double sizes = p->s[0].radius + p->s[1].radius;
+    double n[3], r;
+    const double h = pair_geometry(p, n, &r);
+    theory_repulsion_pair(&m->repulsion, p->s, &e->pair);
+    e->force_scale = theory_repulsion_energy(&m->repulsion, p->s[0].radius, p->s[1].radius, h) / (m->repulsion.kappa_factor * sizes);
+    e->torque_scale = e->force_scale * sizes;
+}
+
 static void add_pair(struct crowd *c, size_t i, size_t j, const double shift[3], void *data)
 {
     (void)data;
+    if (c->m.driven[c->sphere[i].species - 1] && c->m.driven[c->sphere[j].species - 1])
+        return;                         /* both move as they are told: no pair */
     struct pair_state p = { .s = { c->sphere[i].s, c->sphere[j].s } };
     struct expected e = { 0 };
     double change[3];
@@ -191,6 +193,10 @@ static void add_pair(struct crowd *c, size_t i, size_t j, const double shift[3],
     if (c->present[CONTACT]) {
         expect_contact(&c->m, &p, &e);
         book_pair(c, CONTACT, i, j, &p, &e);
+    }
+    if (c->present[REPULSION]) {
+        expect_repulsion(&c->m, &p, &e);
+        book_pair(c, REPULSION, i, j, &p, &e);
     }
     c->pairs++;
     c->self_pairs += i == j;
@@ -210,6 +216,14 @@ static void add_single(struct crowd *c, size_t k)
             c->stress[DRAG_STRESS][a] += stresslet[a / 3][a % 3];
         c->stress_scale[DRAG_STRESS] += c->scale[k][DRAG][1];
     }
+    if (c->present[APPLIED]) {
+        double *load = c->expected[k][APPLIED];
+        scene_applied(c->scene, (size_t)c->sphere[k].species - 1, load);
+        c->scale[k][APPLIED][0] = norm(load) + 1;
+        c->scale[k][APPLIED][1] = norm(load + 3) + 1;
+    }
+    if (c->m.driven[c->sphere[k].species - 1])
+        return;                         /* its momentum is not the crowd's */
     const double mass = 4 * M_PI / 3 * c->m.density[c->sphere[k].species - 1] * pow(s->radius, 3);
     for (int a = 0; a < 9; a++)
         c->stress[KINETIC][a] -= mass * (s->u[a / 3] - flow[a / 3]) * (s->u[a % 3] - flow[a % 3]);
@@ -223,7 +237,7 @@ static void expect(struct crowd *c)
     for (size_t i = 0; i < c->count; i++) {
         add_single(c, i);
         for (size_t j = i; j < c->count; j++)
-            each_image(c, i, j, range_of(c, i, j) * (1 + 1e-12), add_pair, NULL);
+            crowd_each_image(c, i, j, crowd_range(c, i, j) * (1 + 1e-12), add_pair, NULL);
     }
 }
 
@@ -244,7 +258,7 @@ static void try_pair(struct crowd *c, size_t i, size_t j, const double shift[3],
         p.s[1].u[k] += change[k];
     }
     history_of(c, i, j, &p);
-    (s->force == CONTACT ? expect_contact : expect_lubrication)(&c->m, &p, &e);
+    (s->force == CONTACT ? expect_contact : s->force == REPULSION ? expect_repulsion : expect_lubrication)(&c->m, &p, &e);
     const double *own = e.pair.force[i == s->sphere ? 0 : 1], size = norm(own);
     for (int sign = -1; sign <= 1 && size > 0; sign += 2) {
         double rest = 0;
@@ -265,10 +279,12 @@ static const char *crowd_words(struct crowd *c, int force, size_t at, const doub
     for (int k = 0; k < 3; k++)
         s.off[k] = own[k] - c->expected[at][force][k];
     text[0] = '\0';
-    for (size_t other = 0; other < c->count && force != DRAG; other++)
-        each_image(c, other < at ? other : at, other < at ? at : other, range_of(c, at, other) * (1 + 1e-12), try_pair, &s);
+    for (size_t other = 0; other < c->count && force != DRAG && force != APPLIED; other++)
+        crowd_each_image(c, other < at ? other : at, other < at ? at : other, crowd_range(c, at, other) * (1 + 1e-12), try_pair, &s);
     if (text[0])
         return text;
+    if (force == APPLIED)
+        return "";
     if (force == DRAG)
         return flows && right_at_rest ? ": right at rest, so how the flow enters" : "";
     if (flows && right_at_rest)
@@ -276,10 +292,28 @@ static const char *crowd_words(struct crowd *c, int force, size_t at, const doub
     return ", not one pair more or less: if single pairs are right, a neighbour is misplaced or several are lost";
 }
 
-static void judge_forces(struct check_run *run, struct crowd *c, const char *variant, const struct forces *f, bool right_at_rest[FORCES])
+void crowd_verdict_start(struct crowd_verdict *v)
+{
+    *v = (struct crowd_verdict){ .total.w = WORST_NONE };
+    for (int force = 0; force < FORCES; force++)
+        v->force[force].w = (struct worst)WORST_NONE;
+    for (int origin = 0; origin < ORIGINS; origin++)
+        v->stress[origin].w = (struct worst)WORST_NONE;
+}
+
+/* Room for a sentence about `w`, if it is worse than what was seen before. */
+static char *worse(struct crowd_seen *s, const struct worst *w)
+{
+    if (w->error <= s->w.error || isnan(s->w.error))
+        return NULL;
+    s->w = *w;
+    return s->sentence;
+}
+
+static void see_forces(struct check_run *run, struct crowd *c, const char *variant, const struct forces *f, struct crowd_verdict *v)
 {
     struct worst total = WORST_NONE;
-    char what[128];
+    char *sentence;
     for (int force = 0; force < FORCES; force++) {
         struct worst w = WORST_NONE;
         if (!c->present[force])
@@ -289,15 +323,14 @@ static void judge_forces(struct check_run *run, struct crowd *c, const char *var
             worst_see_vector(&w, own, c->expected[k][force], 3, scale[0], k);
             worst_see_vector(&w, own + 3, c->expected[k][force] + 3, 3, scale[1], k);
         }
-        snprintf(what, sizeof what, "%s: %s", variant, force_name[force]);
         const bool right = w.error <= run->gate_case->tolerance;
-        const char *words = right ? "" : crowd_words(c, force, w.at, forces_at(f, 0, force_name[force], (int)w.at + 1), run->gate_case->tolerance,
-                                                     right_at_rest[force]);
-        check_error(run, MODEL, what, w.measured, w.expected, w.error, run->gate_case->tolerance,
-                    "%s: %s on sphere %zu (radius %g) is %s%s; %zu spheres, %zu pairs in range, %zu of them a sphere and its own image",
-                    variant, force_name[force], w.at + 1, c->sphere[w.at].s.radius, compare(&w), words, c->count, c->pairs, c->self_pairs);
+        if ((sentence = worse(&v->force[force], &w)))
+            snprintf(sentence, WHY_LENGTH, "%s: %s on sphere %zu (radius %g) is %s%s; %zu spheres, %zu pairs in range, %zu of them a sphere and its own image",
+                     variant, force_name[force], w.at + 1, c->sphere[w.at].s.radius, compare(&w),
+                     right ? "" : crowd_words(c, force, w.at, forces_at(f, 0, force_name[force], (int)w.at + 1), run->gate_case->tolerance, v->right_at_rest[force]),
+                     c->count, c->pairs, c->self_pairs);
         if (norm(c->m.gradient[0]) + norm(c->m.gradient[1]) + norm(c->m.gradient[2]) == 0)
-            right_at_rest[force] = right;
+            v->right_at_rest[force] = right;
     }
     for (size_t k = 0; k < c->count; k++)
         for (int d = 0; d < 6; d++) {
@@ -309,33 +342,50 @@ static void judge_forces(struct check_run *run, struct crowd *c, const char *var
                 }
             worst_see(&total, forces_at(f, 0, "total", (int)k + 1)[d], sum, scale, k);
         }
-    snprintf(what, sizeof what, "%s: total = sum of parts", variant);
-    check_error(run, INVARIANT, what, total.measured, total.expected, total.error, run->gate_case->tolerance,
-                "%s: `total` on sphere %zu is not the sum of the forces listed: %s", variant, total.at + 1, compare(&total));
+    if ((sentence = worse(&v->total, &total)))
+        snprintf(sentence, WHY_LENGTH, "%s: `total` on sphere %zu is not the sum of the forces listed: %s", variant, total.at + 1, compare(&total));
 }
 
-static void judge_stress(struct check_run *run, const struct crowd *c, const char *variant, const struct pair_answer *answer)
+static bool see_stress(struct check_run *run, const struct crowd *c, const char *variant, const struct pair_answer *answer, struct crowd_verdict *v)
 {
     const bool wanted[ORIGINS] = { c->present[CONTACT], c->present[CONTACT] && c->m.contact.friction > 0,
-                                   c->present[LUBRICATION], c->present[DRAG], true };
+                                   c->present[LUBRICATION], c->present[DRAG], c->present[REPULSION], true };
     for (int origin = 0; origin < ORIGINS; origin++) {
         if (!wanted[origin])
             continue;
         double *own = answer_stress(run, answer, 1, origin_name[origin], c->m.volume);
         if (!own)
-            return;
+            return false;
         struct worst w = WORST_NONE;
-        char what[128];
         worst_see_vector(&w, own, c->stress[origin], 9, c->stress_scale[origin] + 1e-300, 0);
-        snprintf(what, sizeof what, "%s: %s stress", variant, origin_name[origin]);
-        check_error(run, MODEL, what, w.measured, w.expected, w.error, run->gate_case->tolerance,
-                    "%s: the %s stress times the volume is %s", variant, origin_name[origin], compare(&w));
+        char *sentence = worse(&v->stress[origin], &w);
+        if (sentence)
+            snprintf(sentence, WHY_LENGTH, "%s: the %s stress times the volume is %s", variant, origin_name[origin], compare(&w));
         free(own);
     }
+    return true;
 }
 
-static bool ask(struct check_run *run, const char *variant, json_t *scene, const struct crowd *c, struct pair_answer *answer)
+static void judge(struct check_run *run, enum judgement judgement, const struct crowd_seen *s, const char *before, const char *name, const char *after)
 {
+    char what[128];
+    snprintf(what, sizeof what, "%s%s%s", before, name, after);
+    if (s->w.error >= 0 || isnan(s->w.error))
+        check_error(run, judgement, what, s->w.measured, s->w.expected, s->w.error, run->gate_case->tolerance, "%s", s->sentence);
+}
+
+void crowd_judge(struct check_run *run, const struct crowd_verdict *v, const char *before)
+{
+    for (int force = 0; force < FORCES; force++)
+        judge(run, MODEL, &v->force[force], before, force_name[force], "");
+    judge(run, INVARIANT, &v->total, before, "total = sum of parts", "");
+    for (int origin = 0; origin < ORIGINS; origin++)
+        judge(run, MODEL, &v->stress[origin], before, origin_name[origin], " stress");
+}
+
+bool crowd_ask(struct check_run *run, const char *variant, json_t *scene, struct crowd *c, struct pair_answer *answer)
+{
+    expect(c);
     struct state_row *rows = calloc(c->count, sizeof *rows);
     for (size_t k = 0; k < c->count; k++) {
         rows[k] = (struct state_row){ .id = (int)k + 1, .species = c->sphere[k].species };
@@ -362,6 +412,36 @@ static bool ask(struct check_run *run, const char *variant, json_t *scene, const
     return good;
 }
 
+bool crowd_see(struct check_run *run, const char *name, json_t *scene, struct crowd *c, struct crowd_verdict *v)
+{
+    struct pair_answer answer = { 0 };
+    const bool answered = crowd_ask(run, name, scene, c, &answer);
+    if (answered)
+        see_forces(run, c, name, &answer.forces, v);
+    const bool seen = answered && see_stress(run, c, name, &answer, v);
+    forces_free(&answer.forces);
+    return seen;
+}
+
+bool crowd_of_scene(struct check_run *run, const json_t *scene, struct crowd *c)
+{
+    *c = (struct crowd){ .scene = scene };
+    if (!model_read(run, scene, &c->m))
+        return false;
+    const bool present[FORCES] = { c->m.has_contact, c->m.has_lubrication, c->m.has_drag, scene_get(scene, "forces.repulsion") != NULL,
+                                   scene_get(scene, "forces.applied") != NULL };
+    memcpy(c->present, present, sizeof present);
+    return true;
+}
+
+void crowd_free(struct crowd *c)
+{
+    free(c->sphere);
+    free(c->history);
+    free(c->expected);
+    free(c->scale);
+}
+
 void pair_crowd(struct check_run *run)
 {
     size_t k;
@@ -372,24 +452,21 @@ void pair_crowd(struct check_run *run)
         const char *name = json_string_value(json_object_get(variant, "name"));
         json_t *scene = variant_scene(run->gate_case, variant);
         struct crowd c = { 0 };
-        struct pair_answer answer = { 0 };
-        bool answered = name && model_read(run, scene, &c.m);
+        struct crowd_verdict v;
+        crowd_verdict_start(&v);
+        memcpy(v.right_at_rest, right_at_rest, sizeof right_at_rest);
+        bool answered = name && crowd_of_scene(run, scene, &c);
         if (answered) {
-            const bool present[FORCES] = { c.m.has_contact, c.m.has_lubrication, c.m.has_drag };
-            memcpy(c.present, present, sizeof present);
             make(run, variant, &c);
-            expect(&c);
-            answered = ask(run, name, scene, &c, &answer);
+            answered = crowd_see(run, name, scene, &c, &v);
         }
         if (answered) {
-            judge_forces(run, &c, name, &answer.forces, right_at_rest);
-            judge_stress(run, &c, name, &answer);
+            char before[96];
+            snprintf(before, sizeof before, "%s: ", name);
+            crowd_judge(run, &v, before);
         }
-        forces_free(&answer.forces);
-        free(c.sphere);
-        free(c.history);
-        free(c.expected);
-        free(c.scale);
+        memcpy(right_at_rest, v.right_at_rest, sizeof right_at_rest);
+        crowd_free(&c);
         json_decref(scene);
         if (!answered && results_verdict(&run->results) != VERDICT_PASS)
             return; /* it will not do better in the others; but where some passed, one without support says nothing of them */

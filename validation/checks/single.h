@@ -27,10 +27,20 @@ void track_free(struct track *t);
 struct free_sphere { double radius, mass, inertia, friction, spin_friction; };
 struct free_sphere free_sphere(const struct model *m);
 
+/* Stages as a scene's text says them, durations from strains too; returns how many. And the integral of their G from 0 to t, in closed form. */
+enum { STAGES = 8 };
+size_t stages_read(const json_t *list, struct theory_stage stage[STAGES]);
+void stages_strain(const struct theory_stage *stage, size_t stages, double t, double S[3][3]);
+
+/* A run of free spheres through these stages that begins in the middle. False: no answer; recorded already. */
+bool stages_try_late(struct check_run *run, const json_t *drive, size_t number, double begin);
+
 void check_langevin(struct check_run *run);
 void check_shear(struct check_run *run);
 void check_tether(struct check_run *run);
 void check_stages(struct check_run *run);
+void check_stages_drawn(struct check_run *run);
+void check_run_length(struct check_run *run);
 void check_thermal(struct check_run *run);
 void check_stages_pair(struct check_run *run);
 void check_noise_period(struct check_run *run);

@@ -63,4 +63,7 @@ void check_grip_lost(struct check_run *run);
 void check_passing(struct check_run *run);
 void check_flat_dynamics(struct check_run *run);
 
+void check_drawn_step(struct check_run *run);
+void check_sliding(struct check_run *run);
+
 #endif

@@ -6,6 +6,7 @@ import os
 import re
 import sys
 import traceback
+from math import ceil
 
 from dem import Spheres
 
@@ -129,7 +130,7 @@ def answer_run(q, out):
     need("file" in q.scene.get("start", {}), "a start of its own")
     rows = table(os.path.join(q.folder, q.scene["start"]["file"]))
     rate = max((abs(s["rate"]) for s in q.scene.get("shear", [])), default=0)
-    steps = run["steps"] if "steps" in run else round((run["time"] if "time" in run else run["strain"] / rate) / q.dt)
+    steps = run["steps"] if "steps" in run else ceil((run["time"] if "time" in run else run["strain"] / rate) / q.dt * (1 - 1e-12))
     need(steps * len(rows) <= SLOW and len(rows) <= LARGE, f"the time for {steps} steps of {len(rows)} spheres")
     states, stress = output.get("states", {}), output.get("stress", {}).get("every", steps + 1)
     answer = Answer(out, ["step"], ["step", "time", "strain"], states.get("turn", False))
