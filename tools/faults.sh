@@ -5,7 +5,7 @@
 #     make faults [ONLY=word] [JOBS=2] [LEVEL=A] [LIST=validation/faults/faults.json] [TABLE=docs/measured/faults.csv]
 #
 # Seconds are those of one core, of the gate and the candidate; LAMMPS, the reference, answers each question once for all.
-# At levels B and C the cases that caught the fault at the levels above are asked first, then all in their order. The table of all entries is docs/measured/faults.csv. Its `key`s are two hashes: of
+# At levels B and C the cases that caught the fault at the levels above are asked first, then in their order all that execute what it changes. The table of all entries is docs/measured/faults.csv. Its `key`s are two hashes: of
 # the sources and the entry, and of the case that caught the fault (of all cases, if none did). What was judged with the same key is not judged again, also in
 # another clone; other cells stay as they were.
 set -eu
@@ -42,8 +42,11 @@ entry() { jq -c ".faults[$1]" $list; }
 key() { printf '%s %s' "$SOURCES" "$1" | hash_of; }
 # Is what file $1 says of a fault said of the cases as they are now?
 current() { [ -s "$1" ] && [ "$(jq -r .of "$1")" = "$(hash_of_case "$(jq -r .case "$1")")" ]; }
-# Cases whose time on the right solver is within two bounds, separated by commas.
-cases_between() { jq -r --argjson a "$1" --argjson b "$2" '[to_entries[] | select(.value >= $a and .value < $b) | .key] | join(",")' "$kept/reference.json"; }
+# Cases whose time on the right solver is within two bounds, separated by commas; at levels B and C those that execute what the entry $3 changes.
+cases_between() {
+    jq -r --argjson a "$1" --argjson b "$2" --arg entry "$3" --slurpfile reached "$kept/reached.json" \
+        '$reached[0][$entry] as $those | [to_entries[] | select(.value >= $a and .value < $b) | .key | select($those == null or IN($those[]))] | join(",")' "$kept/reference.json"
+}
 
 # run PROGRAM WORK [options of the gate]: exit code of the gate; what it prints is in WORK/gate.txt
 run() {
@@ -67,6 +70,15 @@ reference() {
     rm -rf "$kept/cases" "$kept/report"
     echo "$now" >"$kept/reference"
 }
+# Which cases can see an entry at all (tools/reached.py): those that run the lines it changes. At level A every case is asked, so that the seconds are those of a user.
+reach() {
+    [ "$level" != A ] || { echo '{}' >"$kept/reached.json"; return 0; }
+    now="$SOURCES $(hash_of_case) $(hash_of <$list)"
+    [ "$(cat "$kept/reached" 2>/dev/null)" != "$now" ] || return 0
+    echo "faults: which cases execute what"
+    tools/reached.py "$level" "$list" "$kept/reference.json" "$kept/reached.json"
+    echo "$now" >"$kept/reached"
+}
 
 # One line of JSON about entry K. The verdict is that of the first case that is red.
 judge() {
@@ -83,7 +95,7 @@ judge() {
         { echo "faults: does not build: $entry" >&2; cat "$work/make.txt" >&2; exit 255; }
     times >"$work/before"
     where="" layer="" said=""
-    for cases in $(known_from_above "$entry") $(for span in "0 0.1" "0.1 0.2" "0.2 0.4" "0.4 0.8" "0.8 1.6" "1.6 3.2" "3.2 6.4" "6.4 1e9"; do cases_between $span; done); do
+    for cases in $(known_from_above "$entry") $(for span in "0 0.1" "0.1 0.2" "0.2 0.4" "0.4 0.8" "0.8 1.6" "1.6 3.2" "3.2 6.4" "6.4 1e9"; do cases_between $span "$(printf %s "$entry" | jq -r .name)"; done); do
         run "$work/build/shear" "$work" --case "$cases" --stop-after 1
         case $code in 0 | 77) continue ;; esac
         layer=$(awk '/ FAIL | inconclusive / { print $1; exit }' "$work/gate.txt")
@@ -166,6 +178,7 @@ rm -rf build/faults/reference build/faults/hashes && mkdir -p build/faults/refer
 restore
 before >build/faults/before.json
 reference
+reach
 jq -r --arg only "${ONLY:-}" '.faults | to_entries[] | select(.value.name | contains($only)) | .key' $list | xargs -r -P "$jobs" -n 1 "$0" judge
 assemble
 summary | tee build/faults/summary.txt
