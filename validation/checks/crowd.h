@@ -1,4 +1,4 @@
-/* Layer 1: many spheres at once, by brute force over all images of all pairs (pair_crowd.c), and scenes drawn at random (pair_drawn.c). */
+/* Layer 1: many spheres at once, what all images of all pairs make of them (crowd.c), how it is judged (pair_crowd.c), and scenes drawn at random (pair_drawn.c). */
 #ifndef CROWD_H
 #define CROWD_H
 
@@ -6,6 +6,8 @@
 
 enum { CONTACT, LUBRICATION, DRAG, REPULSION, APPLIED, FORCES };
 enum { CONTACT_NORMAL, CONTACT_TANGENTIAL, LUBRICATION_STRESS, DRAG_STRESS, REPULSION_STRESS, KINETIC, ORIGINS };
+
+extern const char *const crowd_force[FORCES], *const crowd_origin[ORIGINS];
 
 struct crowd_sphere { struct theory_sphere s; int species; };
 
@@ -33,8 +35,14 @@ void crowd_each_image(struct crowd *c, size_t i, size_t j, double range, crowd_v
 double crowd_range(const struct crowd *c, size_t i, size_t j);
 /* Gap over the sum of radii, if it is below *data (a double), goes there. */
 void crowd_note_gap(struct crowd *c, size_t i, size_t j, const double shift[3], void *smallest);
+/* Sphere k anywhere in the cell. */
+void crowd_anywhere(struct crowd *c, gsl_rng *random, size_t k);
 /* A random history of about this length times the radius for pairs that touch; every other one is listed as (j, i). */
 void crowd_give_histories(struct crowd *c, gsl_rng *random, double length);
+
+/* Pair force (contact, lubrication, repulsion) between i and an image of j, and the pair as it stands. */
+void crowd_expect_pair(struct crowd *c, size_t i, size_t j, const double shift[3], int force, struct pair_state *p, struct expected *e);
+struct state_row *crowd_rows(const struct crowd *c);                /* as a candidate is given them; caller frees */
 
 /* What was seen worst, and the sentence about it. */
 struct crowd_seen { struct worst w; char sentence[WHY_LENGTH]; };

@@ -9,7 +9,7 @@
  *
  * And the same scenes by every scheme for a hundred steps: each has its own way to treat friction, noise-free equations of motion have one
  * solution. What the schemes' velocities and spins differ by is measured against the fastest rate times the duration, which is what a missing
- * force would change. The species in the other order are the same scene: no scheme may treat the first or the last otherwise.
+ * force would change, and places against the way. The species in the other order are the same scene: no scheme may treat the first or the last otherwise.
  */
 #include "crowd.h"
 #include "two_bodies.h"
@@ -19,7 +19,8 @@
 #include <string.h>
 
 enum { SCHEMES = 8, STEPS = 100 };
-struct seen { struct worst velocity, spin; size_t scene[2]; };
+enum { PLACES, VELOCITIES, SPINS };
+struct seen { struct worst w[3]; size_t scene[3]; };
 
 static double mass_of(const struct crowd *c, size_t k)
 {
@@ -76,11 +77,19 @@ static bool turns(const struct crowd *c, const struct forces *told)
     return false;
 }
 
+/* Notes in which scene the worst of each kind is. */
+static void note(struct seen *s, const struct worst before[3], size_t scene)
+{
+    for (int part = 0; part < 3; part++)
+        s->scene[part] = s->w[part].error != before[part].error ? scene : s->scene[part];
+}
+
 static void see(struct seen *s, size_t scene, const struct crowd *c, const struct forces *told, const struct track *track, double dt, double tolerance)
 {
     const double rounding = 1e-15 / dt / tolerance;         /* of a velocity of about 1, so that it takes the whole tolerance */
     const bool spins = turns(c, told);
-    const double before[2] = { s->velocity.error, s->spin.error };
+    struct worst before[3];
+    memcpy(before, s->w, sizeof before);
     for (size_t k = 0; k < c->count; k++) {
         const struct track_point *now = track_at(track, 0, k);
         const struct theory_sphere *then = &c->sphere[k].s;
@@ -88,13 +97,12 @@ static void see(struct seen *s, size_t scene, const struct crowd *c, const struc
         const double m = mass_of(c, k), inertia = 0.4 * m * then->radius * then->radius;
         const double *F = forces_at(told, 0, "total", (int)k + 1);
         for (size_t v = 0; v < 3; v++) {
-            worst_see(&s->velocity, m * (now->u[v] - then->u[v]) / dt, driven ? 0.0 : F[v], size_of(c, k, 0) + m * rounding * (1.0 + fabs(then->u[v])), k);
+            worst_see(&s->w[VELOCITIES], m * (now->u[v] - then->u[v]) / dt, driven ? 0.0 : F[v], size_of(c, k, 0) + m * rounding * (1.0 + fabs(then->u[v])), k);
             if (spins && isfinite(now->w[v]))
-                worst_see(&s->spin, inertia * (now->w[v] - then->w[v]) / dt, driven ? 0.0 : F[3 + v], size_of(c, k, 1) + inertia * rounding * (1.0 + fabs(then->w[v])), k);
+                worst_see(&s->w[SPINS], inertia * (now->w[v] - then->w[v]) / dt, driven ? 0.0 : F[3 + v], size_of(c, k, 1) + inertia * rounding * (1.0 + fabs(then->w[v])), k);
         }
     }
-    s->scene[0] = s->velocity.error != before[0] ? scene : s->scene[0];
-    s->scene[1] = s->spin.error != before[1] ? scene : s->scene[1];
+    note(s, before, scene);
 }
 
 /* The species in the other order, and what is told of each: only the law of rough surfaces goes by number. */
@@ -115,13 +123,9 @@ static json_t *reversed(const json_t *scene)
 static bool go(struct check_run *run, const char *name, json_t *scene, const struct crowd *c, double dt, int steps, bool backwards, struct track *track)
 {
     char key[96];
-    struct state_row *row = calloc(c->count, sizeof *row);
-    for (size_t k = 0; k < c->count; k++) {
-        row[k] = (struct state_row){ .id = (int)k + 1, .species = backwards ? (int)c->m.species + 1 - c->sphere[k].species : c->sphere[k].species };
-        memcpy(row[k].x, c->sphere[k].s.x, sizeof row[k].x);
-        memcpy(row[k].u, c->sphere[k].s.u, sizeof row[k].u);
-        memcpy(row[k].w, c->sphere[k].s.w, sizeof row[k].w);
-    }
+    struct state_row *row = crowd_rows(c);
+    for (size_t k = 0; backwards && k < c->count; k++)
+        row[k].species = (int)c->m.species + 1 - row[k].species;
     step_key(scene, key);
     scene_set(scene, key, json_real(dt));
     const bool good = track_ask(run, name, scene, row, c->count, &steps, 1, track);
@@ -144,17 +148,19 @@ static bool step(struct check_run *run, const char *name, json_t *scene, const s
 /* How far the ways of two schemes part. */
 static void see_ways(struct seen *s, size_t scene, const struct crowd *c, const struct track *mine, const struct track *other, double duration)
 {
-    const double change = fmin(1.0, fastest(c) * duration), before[2] = { s->velocity.error, s->spin.error };
+    const double change = fmin(1.0, fastest(c) * duration);
+    struct worst before[3];
+    memcpy(before, s->w, sizeof before);
     for (size_t k = 0; k < c->count; k++) {
         const struct track_point *a = track_at(mine, 0, k), *b = track_at(other, 0, k);
         for (size_t v = 0; v < 3; v++) {
-            worst_see(&s->velocity, a->u[v], b->u[v], change * (1.0 + fabs(b->u[v])), k);
+            worst_see(&s->w[PLACES], a->x[v], b->x[v], duration * (1.0 + fabs(b->u[v])), k);
+            worst_see(&s->w[VELOCITIES], a->u[v], b->u[v], change * (1.0 + fabs(b->u[v])), k);
             if (isfinite(b->w[v]))
-                worst_see(&s->spin, a->w[v], b->w[v], change * (1.0 + fabs(b->w[v])), k);
+                worst_see(&s->w[SPINS], a->w[v], b->w[v], change * (1.0 + fabs(b->w[v])), k);
         }
     }
-    s->scene[0] = s->velocity.error != before[0] ? scene : s->scene[0];
-    s->scene[1] = s->spin.error != before[1] ? scene : s->scene[1];
+    note(s, before, scene);
 }
 
 /* All schemes, as long as the fastest motion lasts and no sphere goes farther than a fiftieth of a radius; and with the species in the other order. */
@@ -196,10 +202,12 @@ static bool ways(struct check_run *run, json_t *scene, const struct crowd *c, si
 
 static void judge(struct check_run *run, const char *label, const struct seen *s, const char *after, double tolerance, const char *fault)
 {
-    static const char *const names[2] = { "velocities", "spins" };
+    static const char *const names[3] = { "places", "velocities", "spins" };
     char what[96];
-    for (int part = 0; part < 2; part++) {
-        const struct worst *w = part ? &s->spin : &s->velocity;
+    for (int part = 0; part < 3; part++) {
+        const struct worst *w = &s->w[part];
+        if (part == PLACES && w->error < 0.0)
+            continue;               /* in one step nothing moves */
         snprintf(what, sizeof what, "%s: %s%s", label, names[part], after);
         check_error(run, INVARIANT, what, w->measured, w->expected, w->error, tolerance, "%s: the %s of sphere %zu of scene %zu: %s; %s", label,
                     names[part], w->at + 1, s->scene[part], compare(w), fault);
@@ -216,7 +224,7 @@ void check_drawn_step(struct check_run *run)
     gsl_rng *random = pair_random(run);
     bool good = json_object_size(all) <= SCHEMES;
     for (size_t k = 0; k < SCHEMES; k++)
-        steps[k] = parted[k] = turned[k] = (struct seen){ WORST_NONE, WORST_NONE, { 0 } };
+        steps[k] = parted[k] = turned[k] = (struct seen){ { WORST_NONE, WORST_NONE, WORST_NONE }, { 0 } };
     for (size_t k = 1; k <= scenes && good; k++) {
         struct crowd c = { 0 };
         struct pair_answer told = { 0 };

@@ -226,27 +226,26 @@ static void judge_distribution(struct check_run *run, const struct model *m, con
 
 static void judge_tables(struct check_run *run, const char *name, const struct model *m, size_t count, double snapshots)
 {
+    static const struct { const char *what, *file, *columns; int of; } means[] = {
+        { "temperature.csv: T", "temperature.csv", "time,T_x,T_y,T_z,T", HALF_SUM },
+        { "temperature.csv: W", "temperature.csv", "time,W_x,W_y,W_z,W", SUM },
+        { "temperature.csv: T by species", "temperature.csv", "time,T_small,T_large,T_z,T", HALF_SUM },      /* there are as many of each, and T_z, W_x are 0 */
+        { "temperature.csv: W by species", "temperature.csv", "time,W_small,W_large,W_x,W", HALF_SUM },
+        { "velocity_correlation.csv: integral", "velocity_correlation.csv", "lag,c_x,c_y,c_z,integral", TRAPEZOIDS },
+        { "displacement.csv: D", "displacement.csv", "lag,msd_x,msd_y,msd_z,D", SLOPE_OF_HALF },
+        { "displacement.csv: D_turn", "displacement.csv", "lag,turn_x,turn_y,turn_z,D_turn", SLOPE_OF_SUM },
+    };
     char folder[PATH_LENGTH], out[PATH_LENGTH], what[96];
     path_join(folder, run->work, name);
     path_join(out, folder, "out");
-    snprintf(what, sizeof what, "%s: temperature.csv: T", name);
-    judge_means(run, out, "temperature.csv", "time,T_x,T_y,T_z,T", HALF_SUM, what);
-    snprintf(what, sizeof what, "%s: temperature.csv: W", name);
-    judge_means(run, out, "temperature.csv", "time,W_x,W_y,W_z,W", SUM, what);
-    snprintf(what, sizeof what, "%s: temperature.csv: T by species", name);       /* there are as many of each */
-    judge_means(run, out, "temperature.csv", "time,T_small,T_large,T_z,T", HALF_SUM, what);
-    snprintf(what, sizeof what, "%s: temperature.csv: W by species", name);
-    judge_means(run, out, "temperature.csv", "time,W_small,W_large,W_x,W", HALF_SUM, what);
+    for (size_t k = 0; k < sizeof means / sizeof *means; k++) {
+        snprintf(what, sizeof what, "%s: %s", name, means[k].what);
+        judge_means(run, out, means[k].file, means[k].columns, means[k].of, what);
+    }
     snprintf(what, sizeof what, "%s: viscosity.csv: pressure", name);
     judge_pressure(run, out, what);
     snprintf(what, sizeof what, "%s: averages.csv: T, W, pressure", name);
     judge_averages(run, out, what);
-    snprintf(what, sizeof what, "%s: velocity_correlation.csv: integral", name);
-    judge_means(run, out, "velocity_correlation.csv", "lag,c_x,c_y,c_z,integral", TRAPEZOIDS, what);
-    snprintf(what, sizeof what, "%s: displacement.csv: D", name);
-    judge_means(run, out, "displacement.csv", "lag,msd_x,msd_y,msd_z,D", SLOPE_OF_HALF, what);
-    snprintf(what, sizeof what, "%s: displacement.csv: D_turn", name);
-    judge_means(run, out, "displacement.csv", "lag,turn_x,turn_y,turn_z,D_turn", SLOPE_OF_SUM, what);
     snprintf(what, sizeof what, "%s: stress across the plane", name);
     judge_stress(run, out, what);
     snprintf(what, sizeof what, "%s: pair_distribution.csv: g", name);

@@ -10,8 +10,8 @@
  *     contacts, temperature                 contact numbers with and without rattlers; <m c^2>, <I w^2>, spins of nearest neighbours
  *     viscosity, brownian_stress            parts over eta rate, N1, N2, pressure; -(kT/V) a/(shell + depth) n n
  *
- * This file has the run, its pairs and how a table is read; the tables of each moment are in observers_moment.c, what gathers over the run in
- * observers_run.c.
+ * This file has the run, its pairs and how a table is read; the tables of each moment are in observers_moment.c, those of lags in
+ * observers_lags.c, what else gathers over the run in observers_run.c.
  */
 #include "observers.h"
 #include "packing.h"

@@ -1,4 +1,4 @@
-/* Layer 6, tables of a run: what their checks share (observers.c, observers_moment.c, observers_run.c). */
+/* Layer 6, tables of a run: what their checks share (observers.c, observers_moment.c, observers_lags.c, observers_run.c). */
 #ifndef OBSERVERS_CHECK_H
 #define OBSERVERS_CHECK_H
 
@@ -55,8 +55,10 @@ void film_judge_viscosity(const struct film *f);
 void film_judge_kinetic(const struct film *f);
 void film_judge_brownian(const struct film *f);
 
-/* The tables that are written at the end, and those of stresses (observers_run.c). */
+/* Those of lags (observers_lags.c). */
 void film_judge_lags(const struct film *f);
+
+/* The others that are written at the end, and those of stresses (observers_run.c). */
 void film_judge_distribution(const struct film *f);
 void film_judge_plane(const struct film *f);
 void film_judge_stress_table(const struct film *f);

@@ -4,7 +4,7 @@
  * Scenes drawn at random over what a scene may say: one to five sizes up to twenty to one, held and driven ones, any sum of shears that keeps a
  * cell, at any time before or after 0, cells that lean, faces that are open, every contact and friction law with and without dashpots, both
  * forms of the repulsion, any cut-offs, drag with and without torque, constant loads; a dozen spheres that overlap, nearly touch or stand far outside the
- * cell, with histories. Force, torque and stress of every origin against the sum over all images (pair_crowd.c): a law that is right for the
+ * cell, with histories. Force, torque and stress of every origin against the sum over all images (crowd.c): a law that is right for the
  * numbers of the other cases and wrong for others shows here.
  */
 #include "crowd.h"
@@ -192,11 +192,7 @@ static bool place_one(struct crowd *c, gsl_rng *random, size_t k, double overlap
         for (int d = 0; d < 3; d++)
             x[d] = other->x[d] + sizes * (1.0 + gap) * n[d];
     } else
-        for (int v = 0; v < 3; v++) {
-            const double along = gsl_rng_uniform(random);
-            for (int d = 0; d < 3; d++)
-                x[d] = (v ? x[d] : 0.0) + along * c->m.cell[v][d];
-        }
+        crowd_anywhere(c, random, k);
     for (size_t j = 0; j <= k && deepest <= overlap; j++)
         crowd_each_image(c, j, k, 1.001 * crowd_range(c, j, k), note_depth, &deepest);
     return deepest <= overlap;
