@@ -94,12 +94,15 @@ void precision_allow(struct check_run *run, const struct question *q)
           moves ? " x root of the number of steps" : "");
 }
 
+/* Of a list of gaps, or of pairs [ratio of sizes, gap]. */
 static void leave_out(json_t *parameters, const char *key, double edge, double width)
 {
     json_t *list = json_object_get(parameters, key);
-    for (size_t k = json_array_size(list); k-- > 0;)
-        if (fabs(json_number_value(json_array_get(list, k)) - edge) <= width)
+    for (size_t k = json_array_size(list); k-- > 0;) {
+        const json_t *item = json_array_get(list, k), *gap = json_array_size(item) == 2 ? json_array_get(item, 1) : item;
+        if (json_is_number(gap) && fabs(json_number_value(gap) - edge) <= width)
             json_array_remove(list, k);
+    }
 }
 
 json_t *precision_parameters(const struct capabilities *c, const json_t *parameters, const json_t *scene)
@@ -110,8 +113,10 @@ json_t *precision_parameters(const struct capabilities *c, const json_t *paramet
     const double width = 40 * c->roundoff;      /* positions of up to ten sums of radii, each rounded twice */
     if (scene_get(scene, "forces.contact"))
         leave_out(mine, "xi", 0, width);
-    if (scene_get(scene, "forces.lubrication"))
+    if (scene_get(scene, "forces.lubrication")) {
         leave_out(mine, "xi", scene_number(scene, "forces.lubrication.outer_gap", NAN), width);
+        leave_out(mine, "pairs", scene_number(scene, "forces.lubrication.outer_gap", NAN), width);
+    }
     if (scene_get(scene, "forces.repulsion"))
         leave_out(mine, "kappas", scene_number(scene, "forces.repulsion.cutoff", NAN), width / scene_number(scene, "forces.repulsion.kappa_factor", NAN));
     return mine;

@@ -47,39 +47,48 @@ static const char *named(char text[96], int stream, const char *what)
 
 /* --- the resistance matrix itself --- */
 
+/* By how much a measured R fails to be what it must be: symmetric, and without negative eigenvalues. */
+struct defects { double skew, least, most; size_t at; };    /* largest |R_ij - R_ji|, at ij; least and largest eigenvalue */
+
+static struct defects measure_defects(const double *R, size_t n)
+{
+    struct defects d = { 0 };
+    gsl_matrix *copy = gsl_matrix_alloc(n, n);
+    gsl_vector *eigenvalue = gsl_vector_alloc(n);
+    gsl_eigen_symm_workspace *space = gsl_eigen_symm_alloc(n);
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j < n; j++) {
+            const double difference = fabs(R[i * n + j] - R[j * n + i]);
+            if (difference > d.skew) {
+                d.skew = difference;
+                d.at = i * n + j;
+            }
+            gsl_matrix_set(copy, i, j, 0.5 * (R[i * n + j] + R[j * n + i]));
+        }
+    gsl_eigen_symm(copy, eigenvalue, space);
+    gsl_vector_minmax(eigenvalue, &d.least, &d.most);
+    gsl_eigen_symm_free(space);
+    gsl_vector_free(eigenvalue);
+    gsl_matrix_free(copy);
+    return d;
+}
+
 static void judge_resistance(const struct subject *s, int stream, const double *R)
 {
     const double tolerance = s->run->gate_case->tolerance;
     const size_t n = s->size;
-    double largest = 0.0, skew = 0.0;
-    size_t at = 0;
+    const struct defects d = measure_defects(R, n);
+    double largest = 0.0;
     char name[96], block[160];
-    for (size_t i = 0; i < n; i++)
-        for (size_t j = 0; j < n; j++) {
-            largest = fmax(largest, fabs(R[i * n + j]));
-            if (fabs(R[i * n + j] - R[j * n + i]) > skew) {
-                skew = fabs(R[i * n + j] - R[j * n + i]);
-                at = i * n + j;
-            }
-        }
+    for (size_t k = 0; k < n * n; k++)
+        largest = fmax(largest, fabs(R[k]));
     snprintf(name, sizeof name, "R of %s: symmetric", force_of[stream]);
-    check_error(s->run, INVARIANT, name, R[at], R[at % n * n + at / n], skew / largest, tolerance,
+    check_error(s->run, INVARIANT, name, R[d.at], R[d.at % n * n + d.at / n], d.skew / largest, tolerance,
                 "the resistance measured from the candidate's own %s is not symmetric; worst block %s", force_of[stream],
-                noise_block_name(block, s, at / n / 3, at % n / 3));
-
-    gsl_matrix *copy = gsl_matrix_alloc(n, n);
-    gsl_vector *eigenvalue = gsl_vector_alloc(n);
-    gsl_eigen_symm_workspace *space = gsl_eigen_symm_alloc(n);
-    for (size_t i = 0; i < n * n; i++)
-        gsl_matrix_set(copy, i / n, i % n, 0.5 * (R[i] + R[i % n * n + i / n]));
-    gsl_eigen_symm(copy, eigenvalue, space);
-    const double least = gsl_vector_min(eigenvalue), most = gsl_vector_max(eigenvalue);
+                noise_block_name(block, s, d.at / n / 3, d.at % n / 3));
     snprintf(name, sizeof name, "R of %s: positive", force_of[stream]);
-    check_error(s->run, INVARIANT, name, least, 0.0, most > 0.0 ? fmax(0.0, -least / most) : NAN, tolerance,
-                "%s puts energy in: its resistance matrix has the eigenvalue %.6g (largest %.6g)", force_of[stream], least, most);
-    gsl_eigen_symm_free(space);
-    gsl_vector_free(eigenvalue);
-    gsl_matrix_free(copy);
+    check_error(s->run, INVARIANT, name, d.least, 0.0, d.most > 0.0 ? fmax(0.0, -d.least / d.most) : NAN, tolerance,
+                "%s puts energy in: its resistance matrix has the eigenvalue %.6g (largest %.6g)", force_of[stream], d.least, d.most);
 }
 
 static void judge_model(const struct subject *s, const struct model *m)
@@ -308,10 +317,21 @@ static void judge_realisation(const struct subject *s, json_t *scene, const stru
     }
 }
 
+/*
+ * Below which share of the largest eigenvalue of R there is no resistance: 1e-11, rounding of doubles. Where answers are rounded more (declared precision, level B)
+ * the asymmetry and the negative eigenvalues of R tell how uncertain its eigenvalues are; a direction is kept if that is 1 % of its resistance or less. A
+ * candidate cannot claim more than it declared.
+ */
+static double least_resistance(const struct subject *s, int stream)
+{
+    const struct defects d = measure_defects(s->R[stream], s->size);
+    return fmax(1e-11, fmin(100.0 * fmax(d.skew, -d.least) / d.most, s->run->allowance));
+}
+
 bool noise_whiten(struct subject *s, int stream, double *stray)
 {
     struct whitening *w = &s->whitening[stream];
-    if (!whitening_make(s->R[stream], s->size, 1e-11, w) || !(s->white[stream] = malloc((s->draws * w->rank + 1) * sizeof(double))))
+    if (!whitening_make(s->R[stream], s->size, least_resistance(s, stream), w) || !(s->white[stream] = malloc((s->draws * w->rank + 1) * sizeof(double))))
         return false;
     check_progress(s->run, "%s, %zu draws", kind_of[stream].name, s->draws);
     *stray = whitening_apply(w, s->draw[stream], s->draws, s->white[stream]);
