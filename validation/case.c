@@ -53,7 +53,7 @@ bool case_lists(const json_t *words, const char *word)
 }
 
 static const char *const known_keys[] = { "about", "layer",      "check",     "tier",     "order",   "needs", "flags",
-                                          "scene", "parameters", "tolerance", "p_values", "seconds", "seed",  "since", "terms" };
+                                          "scene", "parameters", "tolerance", "p_values", "seconds", "seed",  "since", "terms", "double" };
 
 static bool only_known_keys(const struct gate_case *c, char why[WHY_LENGTH])
 {
@@ -125,6 +125,9 @@ static bool parse_case(struct gate_case *c, char why[WHY_LENGTH])
     c->parameters = json_object_get(c->json, "parameters");
     if (!json_is_array(c->needs) || !json_is_array(c->flags))
         return why_not(why, "%s/case.json: 'needs' and 'flags' must be lists of words", c->folder);
+    const json_t *digits = json_object_get(c->json, "double");
+    if (digits && !(c->doubles_only = json_string_value(digits)))
+        return why_not(why, "%s/case.json: 'double' must be a text: why fewer digits cannot answer", c->folder);
     if (!suite_version_known(c->since))
         return why_not(why, "%s/case.json: 'since' is '%s', no version of the suite like 1.0", c->folder, c->since);
     if (!parse_terms(c, why))

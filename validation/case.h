@@ -27,6 +27,7 @@ struct gate_case {
     json_t *parameters;         /* anything the check wants */
     double tolerance;           /* with "reason"; NaN where the case has none */
     const char *reason;
+    const char *doubles_only;           /* why candidates of declared fewer digits are not asked; or null */
     unsigned seed;
     int p_values;               /* how many statistical results the case gives at most; 0: deterministic */
     double seconds;             /* time limit of one start of the candidate; default 60 */

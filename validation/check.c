@@ -78,6 +78,11 @@ static void allow_for_precision(const struct check_run *run, struct result *r)
     result_notes(r, "The tolerance is %.2g wider than that of the case %s.", fmin(more, ALLOWANCE_AT_MOST), run->allowance_reason);
 }
 
+double check_rounding(const struct check_run *run, double of_double)
+{
+    return fmax(of_double, fmin(run->allowance, ALLOWANCE_AT_MOST));
+}
+
 struct result *check_error(struct check_run *run, enum judgement judgement, const char *what, double measured, double expected,
                            double error, double tolerance, const char *sentence, ...)
 {

@@ -93,6 +93,9 @@ void check_garbage(struct check_run *run, const char *why);
 struct table;
 bool check_table(struct check_run *run, const char *out, const char *file, const char *columns, const char *what, struct table *t);
 
+/* What the answers so far may be off by rounding, relatively: of doubles as said, more where level or declared precision leave less. */
+double check_rounding(const struct check_run *run, double of_double);
+
 /* Progress of a long check ("draw 2000 of 20000"); shown only on a terminal. */
 void check_progress(struct check_run *run, const char *format, ...) __attribute__((format(printf, 2, 3)));
 

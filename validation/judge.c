@@ -96,8 +96,13 @@ static void look_for_few_digits(struct check_run *run)
 
 static bool has_needs(struct check_run *run)
 {
+    const struct capabilities *candidate = run->candidate->capabilities;
     size_t k;
     json_t *word;
+    if (run->gate_case->doubles_only && candidate && candidate->roundoff > 0) {
+        check_skip(run, "capabilities", "asks for doubles, and the candidate declares %s: %s", candidate->precision, run->gate_case->doubles_only);
+        return false;
+    }
     json_array_foreach(run->gate_case->needs, k, word)
         if (!capabilities_list(run->candidate->capabilities, json_string_value(word))) {
             check_skip(run, "capabilities", "needs \"%s\", which the candidate does not declare", json_string_value(word));

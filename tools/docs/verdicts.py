@@ -80,6 +80,8 @@ def case_lines(case, results, old, caught, reasons):
         reason = case["tolerance"]["reason"].rstrip(".")
         first = reasons.setdefault(reason, case["name"])
         lines += ["", f"Tolerance {case['tolerance']['value']:g}" + (f": {reason}." if first == case["name"] else f", for the reason given at [{first}](#{first}).")]
+    if "double" in case:
+        lines += ["", "For doubles only: " + case["double"].rstrip(".") + "."]
     sizes = {k: v for k, v in case.get("parameters", {}).items() if k in ("draws", "realisations", "repeats", "pairs", "copies", "spheres", "counts", "strain", "steps")
              and not isinstance(v, (list, dict))}
     if sizes:

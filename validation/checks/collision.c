@@ -100,18 +100,18 @@ static void along(const double a[3], const double b[3], const double n[3], doubl
 }
 
 /* Momentum of free spheres; place, velocity and spin of a driven one. Rounding only, whatever the step. */
-static void see_kept(struct judged *kept, const struct impact *i, const struct track_point *p[2], double t, double eps)
+static void see_kept(const struct check_run *run, struct judged *kept, const struct impact *i, const struct track_point *p[2], double t, double eps)
 {
     for (int a = 0; a < 2; a++)
         for (int k = 0; k < 3 && i->m.driven[a]; k++) {
-            see(kept, p[a]->u[k], i->m.velocity[a][k], 1, 1e-14, eps);
-            see(kept, p[a]->w[k], i->m.spin[a][k], 1, 1e-14, eps);
-            see(kept, p[a]->x[k], i->c.start[a].x[k] + t * i->m.velocity[a][k], 10, 1e-12, eps);
+            see(kept, p[a]->u[k], i->m.velocity[a][k], 1, check_rounding(run, 1e-14), eps);
+            see(kept, p[a]->w[k], i->m.spin[a][k], 1, check_rounding(run, 1e-14), eps);
+            see(kept, p[a]->x[k], i->c.start[a].x[k] + t * i->m.velocity[a][k], 10, check_rounding(run, 1e-12), eps);
         }
     const double *m = i->law.mass;
     for (int k = 0; k < 3 && !i->m.driven[0] && !i->m.driven[1]; k++)
         see(kept, m[0] * p[0]->u[k] + m[1] * p[1]->u[k], m[0] * i->c.start[0].u[k] + m[1] * i->c.start[1].u[k], (m[0] + m[1]) * (i->closing + i->sliding),
-            1e-11, eps);
+            check_rounding(run, 1e-11), eps);
 }
 
 typedef bool look_at(struct check_run *run, struct impact *i, const struct track *track, double dt, const int *at, double eps, struct judged *j);
@@ -127,7 +127,7 @@ static bool look_head_on(struct check_run *run, struct impact *i, const struct t
     const double T = at[track->steps - 1] * dt;
     see(&j[0], leaving / i->closing, e, e, allowed, eps);
     see(&j[1], i->w * (T - (distance - i->m.radius[0] - i->m.radius[1]) / leaving), i->w * duration, i->w * duration, allowed, eps);
-    see_kept(&j[2], i, p, T, eps);
+    see_kept(run, &j[2], i, p, T, eps);
     return true;
 }
 
@@ -151,7 +151,7 @@ static bool look_sliding(struct check_run *run, struct impact *i, const struct t
             see(&j[1], p[a]->w[k], spin, m / M / radius, (first_order + turned) * rub, eps);
         }
     }
-    see_kept(&j[2], i, p, at[track->steps - 1] * dt, eps);
+    see_kept(run, &j[2], i, p, at[track->steps - 1] * dt, eps);
     return true;
 }
 
@@ -171,7 +171,7 @@ static bool look_sticking(struct check_run *run, struct impact *i, const struct 
                 see(&j[1], p[a]->w[k], now[a].w[k], speed / now[a].radius, allowed, eps);
                 see(&j[3], p[a]->x[k], now[a].x[k], speed / i->w, allowed, eps);
             }
-        see_kept(&j[2], i, p, at[s] * dt, eps);
+        see_kept(run, &j[2], i, p, at[s] * dt, eps);
     }
     return true;
 }

@@ -52,7 +52,7 @@ static void try_variant(struct check_run *run, const json_t *variant)
         for (size_t i = 0; i < SPHERES; i++) {
             const size_t kind = i % m.species;
             const double w = sqrt(stiffness_of(scene, kind) / (4.0 / 3.0 * M_PI * m.density[kind] * pow(m.radius[kind], 3))), t = at[s] * dt;
-            const double late = w * w * dt * dt / 6.0 * (w * t + 1.0) + 1e-11, speed = norm(start[i].u);
+            const double late = w * w * dt * dt / 6.0 * (w * t + 1.0) + check_rounding(run, 1e-11), speed = norm(start[i].u);
             for (int k = 0; k < 3; k++) {
                 const double swing = w > 0 ? sin(w * t) / w : t;
                 worst_see(&place, track_at(&track, s, i)->x[k], start[i].x[k] + swing * start[i].u[k], late * speed * (w > 0 ? 1 / w : t), i);
