@@ -125,7 +125,7 @@ static void see_forces(struct check_run *run, struct crowd *c, const char *varia
         }
         const bool right = w.error <= run->gate_case->tolerance;
         if ((sentence = worse(&v->force[force], &w)))
-            snprintf(sentence, WHY_LENGTH, "%s: %s on sphere %zu (radius %g) is %s%s; %zu spheres, %zu pairs in range, %zu of them a sphere and its own image",
+            snprintf(sentence, WHY_LENGTH, "%s: %s on sphere %zu (radius %g) is %s%.900s; %zu spheres, %zu pairs in range, %zu of them a sphere and its own image",
                      variant, crowd_force[force], w.at + 1, c->sphere[w.at].s.radius, compare(&w),
                      right ? "" : crowd_words(c, force, w.at, forces_at(f, 0, crowd_force[force], (int)w.at + 1), run->gate_case->tolerance, v->right_at_rest[force]),
                      c->count, c->pairs, c->self_pairs);
