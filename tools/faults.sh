@@ -33,9 +33,9 @@ known_from_above() {
     jq -r --argjson entry "$1" --arg level "$level" '.[$entry.name] // {} | { A: [], B: [.A], C: [.A, .B] }[$level] | unique[] | select(. and test("^[-a-z0-9.]+$"))' \
         build/faults/before.json
 }
-# The table as it was, by name.
-before() {
-    [ ! -f $table ] && echo '{}' || python3 -c 'import csv, json, sys; json.dump({r["fault"]: r for r in csv.DictReader(open(sys.argv[1]))}, sys.stdout)' $table
+# A table of results, by name of the entry.
+rows() {
+    [ ! -f "$1" ] && echo '{}' || python3 -c 'import csv, json, sys; json.dump({r["fault"]: r for r in csv.DictReader(open(sys.argv[1]))}, sys.stdout)' "$1"
 }
 # Line K of the list, and the hash under which it is kept.
 entry() { jq -c ".faults[$1]" $list; }
@@ -45,11 +45,9 @@ current() { [ -s "$1" ] && [ "$(jq -r .of "$1")" = "$(hash_of_case "$(jq -r .cas
 # Batches of cases, those that caught most per second first, as the committed table of this level says; the first takes about a second, the next more. In
 # a batch the gate asks cheap layers first.
 order() {
-    known=docs/measured/faults.csv
-    [ -f $known ] && python3 -c 'import csv, json, sys; json.dump([r[sys.argv[1]] for r in csv.DictReader(open(sys.argv[2]))], sys.stdout)' "$level" $known >"$kept/caught.json" ||
-        echo '[]' >"$kept/caught.json"
-    jq --slurpfile caught "$kept/caught.json" '
-        ($caught[0] | group_by(.) | map({ (.[0]): length }) | add // {}) as $count
+    rows docs/measured/faults.csv >"$kept/known.json"
+    jq --arg level "$level" --slurpfile known "$kept/known.json" '
+        ($known[0] | map(.[$level]) | group_by(.) | map({ (.[0]): length }) | add // {}) as $count
         | to_entries | map({ key, seconds: ([.value, 0.05] | max) }) | sort_by(-(($count[.key] // 0) + 1) / .seconds, .key)
         | reduce .[] as $case ({ sum: 0, batch: [[], [], [], [], [], []] };
             .sum += $case.seconds | .batch[.sum as $s | [1, 3, 8, 20, 60] | map(select($s >= .)) | length] += [$case.key])
@@ -161,7 +159,7 @@ for line in sys.stdin:
         said = json.load(open(path)) if os.path.exists(path) else {}
         entry[level] = dict(said, key=key + " " + said["of"]) if said and said["of"] == of_case(said["case"]) else None
     print(json.dumps(entry))' "$(sources A)" "$(sources B)" "$(sources C)" >build/faults/all.jsonl
-    before >build/faults/before.json
+    rows "$table" >build/faults/before.json
     jq -rn --slurpfile old build/faults/before.json '
         def number: if . == "" then "" else tonumber? end;
         def caught(x; equivalent): if x.case == "" then (if equivalent then "passes, as it must" else "NOT CAUGHT" end) else x.case end;
@@ -189,7 +187,7 @@ export SOURCES="${SOURCES:-$(sources "$level")}" GATE_REFERENCE="$PWD/tools/once
 count=$(jq '.faults | length' $list)
 rm -rf build/faults/reference build/faults/hashes && mkdir -p build/faults/reference build/faults/hashes
 restore
-before >build/faults/before.json
+rows "$table" >build/faults/before.json
 reference
 reach
 order

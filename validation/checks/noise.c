@@ -319,13 +319,16 @@ static void judge_realisation(const struct subject *s, json_t *scene, const stru
 
 /*
  * Below which share of the largest eigenvalue of R there is no resistance: 1e-11, rounding of doubles. Where answers are rounded more (declared precision, level B)
- * the asymmetry and the negative eigenvalues of R tell how uncertain its eigenvalues are; a direction is kept if that is 1 % of its resistance or less. A
- * candidate cannot claim more than it declared.
+ * the asymmetry and the negative eigenvalues of R tell how uncertain its eigenvalues are, but no more than may be expected of such answers; a direction is
+ * kept if that is 1 % of its resistance or less.
  */
 static double least_resistance(const struct subject *s, int stream)
 {
+    const double of_doubles = 1e-11, rounding = check_rounding(s->run, of_doubles);
+    if (rounding == of_doubles)
+        return of_doubles;
     const struct defects d = measure_defects(s->R[stream], s->size);
-    return fmax(1e-11, fmin(100.0 * fmax(d.skew, -d.least) / d.most, s->run->allowance));
+    return fmax(of_doubles, fmin(100.0 * fmax(d.skew, -d.least) / d.most, rounding));
 }
 
 bool noise_whiten(struct subject *s, int stream, double *stray)
