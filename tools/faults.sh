@@ -5,9 +5,9 @@
 #     make faults [ONLY=word] [JOBS=2] [LEVEL=A] [LIST=validation/faults/faults.json] [TABLE=docs/measured/faults.csv]
 #
 # Seconds are those of one core, of the gate and the candidate; LAMMPS, the reference, answers each question once for all.
-# At levels B and C the cases that caught the fault at the levels above are asked first, then in their order all that execute what it changes. The table of all entries is docs/measured/faults.csv. Its `key`s are two hashes: of
-# the sources and the entry, and of the case that caught the fault (of all cases, if none did). What was judged with the same key is not judged again, also in
-# another clone; other cells stay as they were.
+# At levels B and C the cases that caught the fault at the levels above are asked first, then in their order all that execute what it changes.
+# The table of all entries is docs/measured/faults.csv. Its `key`s are two hashes: of the sources and the entry, and of the case that caught the
+# fault (of all cases, if none did). What was judged with the same key is not judged again, also in another clone; other cells stay as they were.
 set -eu
 cd "$(dirname "$0")/.."
 list=${LIST:-validation/faults/faults.json}
