@@ -8,6 +8,8 @@
 # At levels B and C the cases that caught the fault at the levels above are asked first, then in their order all that execute what it changes.
 # The table of all entries is docs/measured/faults.csv. Its `key`s are two hashes: of the sources and the entry, and of the case that caught the
 # fault (of all cases, if none did). What was judged with the same key is not judged again, also in another clone; other cells stay as they were.
+# What passed all cases of another time is asked those alone that were added or changed since (faults-suites.csv says of what each such time consisted);
+# if one of them is red, all are asked in their order, so that the seconds are those of a user.
 set -eu
 cd "$(dirname "$0")/.."
 list=${LIST:-validation/faults/faults.json}
@@ -15,6 +17,7 @@ table=${TABLE:-docs/measured/faults.csv}
 level=${LEVEL:-A}
 jobs=${JOBS:-$(nproc)}
 kept=build/faults/$level
+suites=${table%.csv}-suites.csv
 
 hash_of() { sha1sum | cut -c1-16; }
 # The sources of a level: what asks by steps (validation/level_b*) speaks at level B alone.
@@ -27,6 +30,13 @@ hash_of_case() {
     known=build/faults/hashes/${1:-all}
     [ -s "$known" ] || find validation/cases -path "*/${1:-*}/case.json" | LC_ALL=C sort | xargs cat /dev/null | hash_of >"$known"
     cat "$known"
+}
+# The cases as they are now: a line each, name and hash.
+suite() { sha1sum validation/cases/*/*/case.json | awk '{ split($2, path, "/"); print path[4] "," substr($1, 1, 16) }'; }
+# The cases that an entry, of which file $1 is known, passed as they are now.
+passed_before() {
+    [ -s "$1" ] && [ -s "$suites" ] && [ -z "$(jq -r .case "$1")" ] || return 0
+    awk -F, -v of="$(jq -r .of "$1")" 'NR == FNR { now[$1] = $2; next } $1 == of && now[$2] == $3 { print $2 }' build/faults/hashes/suite "$suites"
 }
 # The cases that caught entry $1 at the levels above this one, as the table says.
 known_from_above() {
@@ -53,10 +63,11 @@ order() {
             .sum += $case.seconds | .batch[.sum as $s | [1, 3, 8, 20, 60] | map(select($s >= .)) | length] += [$case.key])
         | .batch' "$kept/reference.json" >"$kept/batches.json"
 }
-# The batches, a line each, cases separated by commas; at levels B and C those that execute what the entry $1 changes.
+# The batches, a line each, cases separated by commas, without those in $2; at levels B and C those that execute what the entry $1 changes.
 batches() {
-    jq -r --arg entry "$1" --slurpfile reached "$kept/reached.json" \
-        '$reached[0][$entry] as $those | .[] | map(select($those == null or IN($those[]))) | select(length > 0) | join(",")' "$kept/batches.json"
+    jq -r --arg entry "$1" --arg without "$2" --slurpfile reached "$kept/reached.json" \
+        '$reached[0][$entry] as $those | .[] | map(select(($those == null or IN($those[])) and (IN($without | split("\n")[]) | not))) | select(length > 0) | join(",")' \
+        "$kept/batches.json"
 }
 
 # run PROGRAM WORK [options of the gate]: exit code of the gate; what it prints is in WORK/gate.txt
@@ -91,6 +102,24 @@ reach() {
     echo "$now" >"$kept/reached"
 }
 
+# ask WORK BATCH...: cases until one is red. Sets where, layer, said, and the seconds of one core.
+ask() {
+    work=$1 where="" layer="" said=""
+    shift
+    times >"$work/before"
+    for cases in "$@"; do
+        run "$work/build/shear" "$work" --case "$cases" --stop-after 1
+        case $code in 0 | 77) continue ;; esac
+        layer=$(awk '/ FAIL | inconclusive / { print $1; exit }' "$work/gate.txt")
+        where=$(awk '/ FAIL | inconclusive / { print $2; exit }' "$work/gate.txt")
+        said=$(jq -r '[.results[] | select(.verdict == "FAIL" or .verdict == "inconclusive")] | sort_by(.verdict != "FAIL", .judgement) | .[0].sentence' \
+            "$work/cases/$where/results.json" 2>/dev/null || echo "the gate's own check ended")
+        break
+    done
+    times >"$work/after"
+    seconds=$(awk 'FNR == 2 { split($1, u, /[ms]/); split($2, s, /[ms]/); t = 60 * (u[1] + s[1]) + u[2] + s[2]; if (n++) printf "%.2f", t - first; else first = t }' \
+        "$work/before" "$work/after")
+}
 # One line of JSON about entry K. The verdict is that of the first case that is red.
 judge() {
     entry=$(entry "$1")
@@ -104,25 +133,18 @@ judge() {
             $n = () = /\Q$f\E/g; die "found $n times, not once\n" unless $n == 1; s/\Q$f\E/$r/' "$work/$(printf %s "$entry" | jq -r .file)"
     make --no-print-directory -s -C "$work" B=build CFLAGS="-O2 -w" build/shear 2>"$work/make.txt" ||
         { echo "faults: does not build: $entry" >&2; cat "$work/make.txt" >&2; exit 255; }
-    times >"$work/before"
-    where="" layer="" said=""
-    for cases in $(known_from_above "$entry") $(batches "$(printf %s "$entry" | jq -r .name)"); do
-        run "$work/build/shear" "$work" --case "$cases" --stop-after 1
-        case $code in 0 | 77) continue ;; esac
-        layer=$(awk '/ FAIL | inconclusive / { print $1; exit }' "$work/gate.txt")
-        where=$(awk '/ FAIL | inconclusive / { print $2; exit }' "$work/gate.txt")
-        said=$(jq -r '[.results[] | select(.verdict == "FAIL" or .verdict == "inconclusive")] | sort_by(.verdict != "FAIL", .judgement) | .[0].sentence' \
-            "$work/cases/$where/results.json" 2>/dev/null || echo "the gate's own check ended")
-        break
-    done
-    times >"$work/after"
-    seconds=$(awk 'FNR == 2 { split($1, u, /[ms]/); split($2, s, /[ms]/); t = 60 * (u[1] + s[1]) + u[2] + s[2]; if (n++) printf "%.2f", t - first; else first = t }' \
-        "$work/before" "$work/after")
+    name=$(printf %s "$entry" | jq -r .name)
+    passed=$(passed_before "$kept/$key.json") where=not_asked
+    if [ -n "$passed" ]; then
+        ask "$work" $(batches "$name" "$passed")
+        seconds=$(jq -r --argjson more "$seconds" '(.seconds + $more) * 100 | round / 100' "$kept/$key.json")
+    fi
+    [ -z "$where" ] || ask "$work" $(known_from_above "$entry") $(batches "$name" "")
     jq -cn --arg case "$where" --arg layer "$layer" --argjson seconds "$seconds" --arg sentence "$said" --arg of "$(hash_of_case "$where")" '$ARGS.named' >"$kept/$key.json.new"
     mv "$kept/$key.json.new" "$kept/$key.json"
     rm -rf "$work"
     right=$(printf %s "$entry" | jq -r --arg case "$where" 'if (.class == "equivalent") == ($case == "") then "ok " else "WRONG" end')
-    printf '%s\t%s s\t%s\t%s\t%s\n' "$right" "$seconds" "$(printf %s "$entry" | jq -r .name)" "${where:-passed everything}" "$said" | cut -c1-250
+    printf '%s\t%s s\t%s\t%s\t%s\n' "$right" "$seconds" "$name" "${where:-passed everything}" "$said" | cut -c1-250
 }
 
 # What the table knows from before, under its key.
@@ -171,6 +193,10 @@ for line in sys.stdin:
             + [if .A then .A.sentence else $was["sentence at level A"] end]
             + [.A.key // $was["key A"], .B.key // $was["key B"], .C.key // $was["key C"]]) | @csv' build/faults/all.jsonl >$table.new
     mv $table.new $table
+    # Of which cases those times consisted that the table still names.
+    { echo "cases as of,case,hash"; { tail -n +2 "$suites" 2>/dev/null || true; sed "s/^/$(hash_of_case),/" build/faults/hashes/suite; } | LC_ALL=C sort -u |
+        awk -F, 'NR == FNR { for (k = 1; k <= NF; k++) { gsub(/"/, "", $k); if (split($k, part, " ") == 2) named[part[2]] = 1 } next } $1 in named' "$table" -; } >"$suites.new"
+    mv "$suites.new" "$suites"
 }
 
 summary() {
@@ -186,6 +212,7 @@ export SOURCES="${SOURCES:-$(sources "$level")}" GATE_REFERENCE="$PWD/tools/once
 [ "${1:-}" = judge ] && { judge "$2"; exit; }
 count=$(jq '.faults | length' $list)
 rm -rf build/faults/reference build/faults/hashes && mkdir -p build/faults/reference build/faults/hashes
+suite >build/faults/hashes/suite
 restore
 rows "$table" >build/faults/before.json
 reference
