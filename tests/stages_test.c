@@ -10,21 +10,23 @@
 
 static char path[] = "/tmp/shear-stages-XXXXXX";
 
-/* A scene with these stages and particles, built; the caller closes it. */
-static struct simulation *scene_of(const char *stages, const char *rest, struct error *e)
+/* A scene with these stages and particles, built; the caller closes it. `more`: a second species, or "". */
+static struct simulation *scene_with(const char *more, const char *stages, const char *rest, struct error *e)
 {
     struct simulation *sim = calloc(1, sizeof *sim);
     const struct scene_options options = { .set_count = 0 };
     if (strchr(path, 'X'))
         close(mkstemp(path));
     FILE *out = fopen(path, "w");
-    fprintf(out, "{ \"about\": \"test\", \"seed\": 3, \"species\": [ { \"name\": \"a\", \"radius\": 0.5, \"density\": 1.3 } ], \"stages\": %s,\n%s }\n",
-            stages, rest);
+    fprintf(out, "{ \"about\": \"test\", \"seed\": 3, \"species\": [ { \"name\": \"a\", \"radius\": 0.5, \"density\": 1.3 }%s%s ], \"stages\": %s,\n%s }\n",
+            *more ? ", " : "", more, stages, rest);
     fclose(out);
     memset(e, 0, sizeof *e);
     scene_build(path, &options, sim, e);
     return sim;
 }
+
+static struct simulation *scene_of(const char *stages, const char *rest, struct error *e) { return scene_with("", stages, rest, e); }
 
 static void done_with(struct simulation *sim)
 {
@@ -219,6 +221,40 @@ static void reversal_keeps_images_alike(void)
     done_with(sim);
 }
 
+/*
+ * A row in the very moment in which a rate jumps: a light sphere has half of the jump by then, as the flow of that row has. It moves with the flow
+ * whatever cell it is counted in, and a driven one, which has left the cell, has its own velocity.
+ */
+static void row_at_a_jump(void)
+{
+    static const char *const schemes[] = { "verlet", "predicted_verlet", "split" };
+    for (int k = 0; k < 3; k++) {
+        struct error e;
+        char rest[900], states[100];
+        done_with(scene_of("[]", crowd, &e));                                   /* gives `path` its name */
+        snprintf(states, sizeof states, "%s.csv", path);
+        FILE *out = fopen(states, "w");
+        fprintf(out, "id,species,x,y,z,ux,uy,uz,wx,wy,wz\n1,1,0.3,1.7,0.2,1.36,0,0,0,0,-0.4\n2,2,0.3,6.2,3.2,0,0,0,0,0,0\n");
+        fclose(out);
+        snprintf(rest, sizeof rest, "\"box\": { \"lengths\": [5.1, 6.3, 4.7], \"periodic\": [true, true, true] }, \"fluid\": { \"viscosity\": 0.7 }, "
+                 "\"start\": { \"file\": \"%s\" },\n"
+                 "\"forces\": { \"drag\": { \"torque\": true } }, \"dynamics\": { \"%s\": { \"dt\": 0.001 } }, \"run\": { \"time\": 1 }", states, schemes[k]);
+        struct simulation *sim = scene_with("{ \"name\": \"b\", \"radius\": 0.5, \"density\": 1.3, \"motion\": { \"velocity\": [0.2, 0.3, 0], \"spin\": [0, 0, 0] } }",
+                                            "[ { \"duration\": 1, \"shear\": [ { \"flow\": \"x\", \"gradient\": \"y\", \"rate\": 0.8 } ] },"
+                                            "  { \"duration\": 1, \"shear\": [ { \"flow\": \"x\", \"gradient\": \"y\", \"rate\": -0.8 } ] } ]", rest, &e);
+        check_true(!error_raised(&e) && simulation_begin(sim, &e) && simulation_run(sim, &e), e.text);
+        const struct particles *p = &sim->suspension.particles;
+        const struct box *b = &sim->suspension.box;
+        /* predicted_verlet predicts with the forces of the step before, in which nothing jumped: drag then acts on half the jump, 0.0132 = (zeta dt/m) 1.6 1.7/2. */
+        check_close(norm(minus(p->velocity[0], box_flow(b, p->position[0]))), 0, k == 1 ? 1.4e-2 : 1e-12, "free");
+        const vec3 driven = plus(p->velocity[1], box_flow(b, box_unwrapped(b, p->image[1])));
+        check_true(p->image[1][1] == 1, "the driven sphere has crossed the face");
+        check_close(norm(minus(driven, vec(0.2, 0.3, 0))), 0, 1e-12, "driven");
+        done_with(sim);
+        remove(states);
+    }
+}
+
 static void wrong_stages_are_named(void)
 {
     static const char *const wrong[][2] = {
@@ -248,6 +284,7 @@ static const struct unit_test tests[] = {
     { "every pair in all planes, two laws at once", pairs_in_all_planes },
     { "a free sphere in oscillating shear", free_sphere_in_oscillating_shear },
     { "a reversal keeps images alike", reversal_keeps_images_alike },
+    { "a row at a jump of the rate", row_at_a_jump },
     { "wrong stages are named", wrong_stages_are_named },
     { NULL, NULL }
 };

@@ -19,7 +19,7 @@ static mat3 inverse_of(const mat3 *H, double *determinant)
 /* What follows from G. */
 static void set_gradient(struct box *b, const mat3 G)
 {
-    b->gradient = b->image_gradient = G;
+    b->gradient = b->image_gradient = b->mean_gradient = G;
     for (int k = 0; k < 9; k++)
         b->strain_rate.m[k / 3][k % 3] = 0.5 * (G.m[k / 3][k % 3] + G.m[k % 3][k / 3]);
     b->spin = vec(0.5 * (G.m[2][1] - G.m[1][2]), 0.5 * (G.m[0][2] - G.m[2][0]), 0.5 * (G.m[1][0] - G.m[0][1]));

@@ -22,6 +22,7 @@
 struct box {
     mat3 start;                     /* H(0)              [L] */
     mat3 gradient, image_gradient;  /* G, and G that velocities between two kicks belong to: of the middle of the step [1/T] */
+    mat3 mean_gradient;             /* G that velocities of full steps belong to: where a rate jumps, the mean of both sides */
     struct flow *flow;              /* G(t); NULL: steady */
     bool periodic[3];
     bool flowing;                   /* G is not zero */
@@ -45,7 +46,7 @@ void box_remap(struct box *b);
 /* Puts particles back into the cell; where they cross a face their velocity becomes that of the image taken. */
 void box_wrap(const struct box *b, struct particles *p);
 
-static inline vec3 box_flow(const struct box *b, vec3 x) { return mat3_times(&b->gradient, x); }
+static inline vec3 box_flow(const struct box *b, vec3 x) { return mat3_times(&b->mean_gradient, x); }
 vec3 box_offset(const struct box *b, const int shift[3]);               /* H s */
 vec3 box_unwrapped(const struct box *b, const int image[3]);            /* F H(0) n: what wrapping has taken off a position */
 void box_lattice_shift(const struct box *b, const int shift[3], int lattice_shift[3]);  /* M s */

@@ -5,7 +5,8 @@
  *
  *     U = U_kind - G(t) X,     X the vector of the lattice from that image to the particle itself
  *
- * which changes with G. `ahead`: how far the moment of the velocities is ahead of the box's time; dt/2 between the kicks of velocity Verlet [T].
+ * which changes with G. `ahead`: how far the moment of the velocities is ahead of the box's time; dt/2 between the kicks of velocity Verlet,
+ * 0 after the second, when half of a jump of G has been made, as free particles have half of its impulse [T].
  * In steady flow nothing changes.
  */
 #ifndef CORE_DRIVEN_H

@@ -28,8 +28,14 @@ void suspension_take(struct suspension *s, struct force *f)
 
 bool suspension_find(struct suspension *s, bool *relisted, struct error *e)
 {
-    const double middle = s->start_time + ((double)s->step - 0.5) * s->dt;
-    s->box.image_gradient = s->box.flow && s->step > 0 ? s->box.flow->gradient(s->box.flow, middle) : s->box.gradient;
+    struct box *b = &s->box;
+    if (b->flow && s->step > 0) {       /* a run starts with the flow that there is: box_set_time */
+        const double middle = s->start_time + ((double)s->step - 0.5) * s->dt, aside = 1e-6 * s->dt;
+        const mat3 before = b->flow->gradient(b->flow, b->time - aside), after = b->flow->gradient(b->flow, b->time + aside);
+        b->image_gradient = b->flow->gradient(b->flow, middle);
+        for (int k = 0; k < 9; k++)
+            b->mean_gradient.m[k / 3][k % 3] = 0.5 * (before.m[k / 3][k % 3] + after.m[k / 3][k % 3]);
+    }
     return neighbours_find(&s->neighbours, &s->box, &s->particles, relisted, e);
 }
 
