@@ -38,6 +38,7 @@ static void list_fits(const char *path, size_t least, bool with_origin)
 static void each_fault_fits_once(void)
 {
     list_fits("validation/faults/faults.json", 400, true);
+    list_fits("validation/faults/readers.json", 40, true);
     list_fits("tools/engine/faults.json", 8, false);
 }
 

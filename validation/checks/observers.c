@@ -198,6 +198,18 @@ static void judge_unwatched(struct film *f)
                 "%.17g instead of %.17g", w.at + 1, w.measured, w.expected);
 }
 
+/* Every other sphere changes places with the one as far from the end, so that ids are not in the order of species. */
+static void interleave(struct state_row *row, size_t count)
+{
+    for (size_t i = 0; i < count / 2; i += 2) {
+        struct state_row *one = &row[i], *two = &row[count - 1 - i], kept = *one;
+        *one = *two;
+        *two = kept;
+        one->id = (int)i + 1;
+        two->id = (int)(count - i);
+    }
+}
+
 void check_observers(struct check_run *run)
 {
     const json_t *parameters = run->gate_case->parameters;
@@ -228,6 +240,8 @@ void check_observers(struct check_run *run)
     bool good = f.row && f.near && f.nears && model_read(run, f.scene, &f.m) && packing_make(kind, (int)kinds, edge, 0.0, run->seed, f.row, why);
     if (!good)
         check_garbage(run, why);
+    else if (json_is_true(scene_get(parameters, "interleaved")))
+        interleave(f.row, f.count);
     for (int v = 0; v < 3; v++)
         f.start[v][v] = edge;
     f.stages = stages_read(scene_get(f.scene, "stages"), f.stage);

@@ -139,6 +139,8 @@ static void check_thrown(struct check_run *run)
     json_decref(scene);
 }
 
+enum { DRIVEN_MOMENTS = 2 };     /* halfway, where a flow in stages still goes, and at the end */
+
 /* The kinetic stress at the end, -(1/V) sum of m c (x) c over the free spheres, c without the flow: a driven one has no mass to speak of. */
 static void judge_kinetic(struct check_run *run, const char *dynamics, struct scattered *s, const struct track *track)
 {
@@ -152,7 +154,7 @@ static void judge_kinetic(struct check_run *run, const char *dynamics, struct sc
     if (!check_table(run, path, "stress.csv", "kinetic_xx,kinetic_xy,kinetic_xz,kinetic_yx,kinetic_yy,kinetic_yz,kinetic_zx,kinetic_zy,kinetic_zz", name, &stress))
         return;
     for (size_t k = 0; k < 2 * s->pairs; k++) {
-        const struct track_point *p = track_at(track, 0, k);
+        const struct track_point *p = track_at(track, DRIVEN_MOMENTS - 1, k);
         const size_t kind = (size_t)s->row[k].species - 1;
         const double mass = 4.0 / 3.0 * M_PI * s->m.density[kind] * pow(s->m.radius[kind], 3);
         double c[3];
@@ -174,7 +176,7 @@ static void check_driven(struct check_run *run)
 {
     const json_t *parameters = run->gate_case->parameters;
     const bool open[3] = { false, false, false };
-    const int at = (int)scene_number(parameters, "steps", NAN);
+    const int steps = (int)scene_number(parameters, "steps", NAN), at[DRIVEN_MOMENTS] = { steps / 2, steps };
     const char *dynamics;
     json_t *settings;
     json_object_foreach((json_t *)json_object_get(parameters, "dynamics"), dynamics, settings)
@@ -186,19 +188,20 @@ static void check_driven(struct check_run *run)
         struct track track;
         struct worst w = WORST_NONE;
         scene_set(scene, "dynamics", json_deep_copy(settings));
-        scene_set(scene, "output.stress.every", json_integer(at));
+        scene_set(scene, "output.stress.every", json_integer(steps));
         step_key(scene, step);
         const double dt = scene_number(scene, step, NAN);
         const bool good = model_read(run, scene, &s.m) && scatter(run, (size_t)scene_number(parameters, "across", 0), open, 0.02, 0.05, &s);
         for (size_t k = 0; good && k < 2 * s.pairs; k++)        /* whole cells away: put back at once, and followed without */
             s.row[k].x[1] += scene_number(parameters, "cells_away", 0) * s.m.cell[1][1];
-        if (good && track_ask(run, dynamics, scene, s.row, 2 * s.pairs, &at, 1, &track)) {
-            for (size_t k = 0; k < 2 * s.pairs; k++) {
-                const struct track_point *p = track_at(&track, 0, k);
+        if (good && track_ask(run, dynamics, scene, s.row, 2 * s.pairs, at, DRIVEN_MOMENTS, &track)) {
+            for (size_t n = 0; n < DRIVEN_MOMENTS * 2 * s.pairs; n++) {
+                const size_t k = n % (2 * s.pairs), moment = n / (2 * s.pairs);
+                const struct track_point *p = track_at(&track, moment, k);
                 for (size_t c = 0; c < 3 && s.row[k].species == 2; c++) {
                     const double u = json_number_value(json_array_get(json_object_get(motion, "velocity"), c));
                     worst_see(&w, p->u[c], u, 1.0, k);
-                    worst_see(&w, p->x[c], s.row[k].x[c] + u * dt * at, s.m.radius[0], k);
+                    worst_see(&w, p->x[c], s.row[k].x[c] + u * dt * at[moment], s.m.radius[0], k);
                     if (isfinite(p->w[c]))
                         worst_see(&w, p->w[c], json_number_value(json_array_get(json_object_get(motion, "spin"), c)), 1.0, k);
                 }
