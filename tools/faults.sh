@@ -196,7 +196,7 @@ for line in sys.stdin:
     # Of which cases those times consisted that the table still names.
     { echo "cases as of,case,hash"; { tail -n +2 "$suites" 2>/dev/null || true; sed "s/^/$(hash_of_case),/" build/faults/hashes/suite; } | LC_ALL=C sort -u |
         awk -F, 'NR == FNR { for (k = 1; k <= NF; k++) { gsub(/"/, "", $k); if (split($k, part, " ") == 2) named[part[2]] = 1 } next } $1 in named' "$table" -; } >"$suites.new"
-    mv "$suites.new" "$suites"
+    if [ "$(wc -l <"$suites.new")" -gt 1 ]; then mv "$suites.new" "$suites"; else rm -f "$suites.new" "$suites"; fi
 }
 
 summary() {
