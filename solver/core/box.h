@@ -21,8 +21,7 @@
 
 struct box {
     mat3 start;                     /* H(0)              [L] */
-    mat3 gradient, image_gradient;  /* G, and G that velocities between two kicks belong to: of the middle of the step [1/T] */
-    mat3 mean_gradient;             /* G that velocities of full steps belong to: where a rate jumps, the mean of both sides */
+    mat3 gradient, image_gradient, mean_gradient;   /* G; of velocities between two kicks: of the middle of the step; of full steps: at a jump the mean of both sides [1/T] */
     struct flow *flow;              /* G(t); NULL: steady */
     bool periodic[3];
     bool flowing;                   /* G is not zero */

@@ -10,6 +10,15 @@ mat3 flow_deformation(const struct flow *f, double from, double to)
     return F;
 }
 
+mat3 flow_mean(const struct flow *f, double time, double aside)
+{
+    const mat3 before = f->gradient(f, time - aside), after = f->gradient(f, time + aside);
+    mat3 G;
+    for (int k = 0; k < 9; k++)
+        G.m[k / 3][k % 3] = 0.5 * (before.m[k / 3][k % 3] + after.m[k / 3][k % 3]);
+    return G;
+}
+
 double box_strain(const struct box *b, double from, double to)
 {
     return b->flow ? b->flow->travelled(b->flow, to) - b->flow->travelled(b->flow, from) : b->rate * (to - from);

@@ -21,5 +21,7 @@ struct flow {
 };
 
 mat3 flow_deformation(const struct flow *f, double from, double to);
+/* [G(t - aside) + G(t + aside)]/2: where a rate jumps, the mean of both sides. `aside`: more than times are rounded, far less than a step [T]. */
+mat3 flow_mean(const struct flow *f, double time, double aside);
 
 #endif

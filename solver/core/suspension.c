@@ -29,14 +29,9 @@ void suspension_take(struct suspension *s, struct force *f)
 bool suspension_find(struct suspension *s, bool *relisted, struct error *e)
 {
     struct box *b = &s->box;
-    if (b->flow && s->step > 0) {       /* a run starts with the flow that there is: box_set_time */
-        const double middle = s->start_time + ((double)s->step - 0.5) * s->dt;
-        const double aside = 1e-6 * s->dt;                  /* by more than times are rounded, by less than a rate changes otherwise */
-        const mat3 before = b->flow->gradient(b->flow, b->time - aside), after = b->flow->gradient(b->flow, b->time + aside);
-        b->image_gradient = b->flow->gradient(b->flow, middle);
-        for (int k = 0; k < 9; k++)
-            b->mean_gradient.m[k / 3][k % 3] = 0.5 * (before.m[k / 3][k % 3] + after.m[k / 3][k % 3]);
-    }
+    const double middle = s->start_time + ((double)s->step - 0.5) * s->dt;
+    if (b->flow && s->step > 0)         /* a run starts with the flow that there is: box_set_time */
+        b->image_gradient = b->flow->gradient(b->flow, middle), b->mean_gradient = flow_mean(b->flow, b->time, 1e-6 * s->dt);
     return neighbours_find(&s->neighbours, &s->box, &s->particles, relisted, e);
 }
 
