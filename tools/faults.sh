@@ -120,6 +120,7 @@ ask() {
     seconds=$(awk 'FNR == 2 { split($1, u, /[ms]/); split($2, s, /[ms]/); t = 60 * (u[1] + s[1]) + u[2] + s[2]; if (n++) printf "%.2f", t - first; else first = t }' \
         "$work/before" "$work/after")
 }
+
 # One line of JSON about entry K. The verdict is that of the first case that is red.
 judge() {
     entry=$(entry "$1")
@@ -183,7 +184,7 @@ for line in sys.stdin:
     print(json.dumps(entry))' "$(sources A)" "$(sources B)" "$(sources C)" >build/faults/all.jsonl
     rows "$table" >build/faults/before.json
     jq -rn --slurpfile old build/faults/before.json '
-        def number: if . == "" then "" else tonumber? end;
+        def number: if . == "" or . == null then "" else tonumber end;
         def caught(x; equivalent): if x.case == "" then (if equivalent then "passes, as it must" else "NOT CAUGHT" end) else x.case end;
         ["fault", "class", "origin", "file", "A", "layer", "seconds", "B", "B seconds", "C", "C seconds", "sentence at level A", "key A", "key B", "key C"],
         (inputs | . as $f | ($old[0][.name] // {}) as $was | (.class == "equivalent") as $e | [.name, .class, .origin, .file]
@@ -193,7 +194,7 @@ for line in sys.stdin:
             + [if .A then .A.sentence else $was["sentence at level A"] end]
             + [.A.key // $was["key A"], .B.key // $was["key B"], .C.key // $was["key C"]]) | @csv' build/faults/all.jsonl >$table.new
     mv $table.new $table
-    # Of which cases those times consisted that the table still names.
+    # Of which cases those times consisted that the table still names (the second word of a key).
     { echo "cases as of,case,hash"; { tail -n +2 "$suites" 2>/dev/null || true; sed "s/^/$(hash_of_case),/" build/faults/hashes/suite; } | LC_ALL=C sort -u |
         awk -F, 'NR == FNR { for (k = 1; k <= NF; k++) { gsub(/"/, "", $k); if (split($k, part, " ") == 2) named[part[2]] = 1 } next } $1 in named' "$table" -; } >"$suites.new"
     if [ "$(wc -l <"$suites.new")" -gt 1 ]; then mv "$suites.new" "$suites"; else rm -f "$suites.new" "$suites"; fi
