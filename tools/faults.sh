@@ -192,7 +192,7 @@ for line in sys.stdin:
             + (if .B then [caught(.B; $e), .B.seconds] else [$was.B, ($was["B seconds"] | number)] end)
             + (if .C then [caught(.C; $e), .C.seconds] else [$was.C, ($was["C seconds"] | number)] end)
             + [if .A then .A.sentence else $was["sentence at level A"] end]
-            + [.A.key // $was["key A"], .B.key // $was["key B"], .C.key // $was["key C"]]) | @csv' build/faults/all.jsonl >$table.new
+            + [.A.key // $was["key A"], .B.key // $was["key B"], .C.key // $was["key C"]]) | map(. // "") | @csv' build/faults/all.jsonl >$table.new
     mv $table.new $table
     # Of which cases those times consisted that the table still names (the second word of a key).
     { echo "cases as of,case,hash"; { tail -n +2 "$suites" 2>/dev/null || true; sed "s/^/$(hash_of_case),/" build/faults/hashes/suite; } | LC_ALL=C sort -u |
