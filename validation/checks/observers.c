@@ -240,7 +240,7 @@ void check_observers(struct check_run *run)
     bool good = f.row && f.near && f.nears && model_read(run, f.scene, &f.m) && packing_make(kind, (int)kinds, edge, 0.0, run->seed, f.row, why);
     if (!good)
         check_garbage(run, why);
-    else if (json_is_true(scene_get(parameters, "interleaved")))
+    else
         interleave(f.row, f.count);
     for (int v = 0; v < 3; v++)
         f.start[v][v] = edge;
