@@ -23,29 +23,36 @@
 double film_radius(const struct film *f, size_t i) { return f->m.radius[f->row[i].species - 1]; }
 double film_mass(const struct film *f, size_t i) { return 4.0 / 3.0 * M_PI * f->m.density[f->row[i].species - 1] * gsl_pow_3(film_radius(f, i)); }
 
-/* The flow of each frame, and its integral from time 0 on. */
+/* The flow of each frame, and its integral from time 0 on. Where a rate jumps (docs/physics.md) velocities have half of the jump, spins nothing. */
 static bool find_flow(struct film *f)
 {
     double way;
     f->flow = calloc(f->frames, sizeof *f->flow);
+    f->turning = calloc(f->frames, sizeof *f->turning);
     f->strain = calloc(f->frames, sizeof *f->strain);
-    for (size_t s = 0; f->flow && f->strain && s < f->frames; s++) {
-        const double time = f->begin + (double)s * f->every * f->dt;
-        memcpy(f->flow[s], f->m.gradient, sizeof f->m.gradient);
+    const bool good = f->flow && f->turning && f->strain;
+    for (size_t s = 0; good && s < f->frames; s++) {
+        const double time = f->begin + (double)s * f->every * f->dt, aside = s > 0 ? 1e-9 * f->dt : 0.0;
+        memcpy(f->turning[s], f->m.gradient, sizeof f->m.gradient);
         for (int k = 0; k < 9; k++)
             f->strain[s][k / 3][k % 3] = f->m.gradient[k / 3][k % 3] * time;
+        double before[3][3];
+        memcpy(before, f->m.gradient, sizeof before);
         if (f->stages) {
-            theory_driven_flow(f->stage, f->stages, time, f->flow[s], &way);
+            theory_driven_flow(f->stage, f->stages, time - aside, before, &way);
+            theory_driven_flow(f->stage, f->stages, time + aside, f->turning[s], &way);
             stages_strain(f->stage, f->stages, time, f->strain[s]);
         }
+        for (int k = 0; k < 9; k++)
+            f->flow[s][k / 3][k % 3] = 0.5 * (before[k / 3][k % 3] + f->turning[s][k / 3][k % 3]);
     }
-    return f->flow && f->strain;
+    return good;
 }
 
 void film_peculiar(const struct film *f, size_t frame, const struct track_point *p, double c[3], double w[3])
 {
-    double (*G)[3] = f->flow[frame];
-    apply(G, p->x, c);
+    double (*G)[3] = f->turning[frame];
+    apply(f->flow[frame], p->x, c);
     for (int k = 0; k < 3; k++) {
         c[k] = p->u[k] - c[k];
         w[k] = p->w[k] - 0.5 * (G[(k + 2) % 3][(k + 1) % 3] - G[(k + 1) % 3][(k + 2) % 3]);
@@ -281,6 +288,7 @@ void check_observers(struct check_run *run)
     free(f.near);
     free(f.nears);
     free(f.flow);
+    free(f.turning);
     free(f.strain);
     free(f.row);
     json_decref(f.scene);

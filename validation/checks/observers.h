@@ -20,7 +20,7 @@ struct film {
     double begin;                   /* time of the first frame */
     struct theory_stage stage[STAGES];
     size_t stages;                  /* 0: steady */
-    double (*flow)[3][3], (*strain)[3][3];      /* of each frame: G, and its integral from time 0 on */
+    double (*flow)[3][3], (*turning)[3][3], (*strain)[3][3];    /* of each frame: G, that of spins where a rate jumps, the integral from time 0 on */
     double dt, kT, range;
     int axis[3];                    /* flow, gradient and vorticity of the fastest shear, of stages the first; x, y, z at rest */
     char out[PATH_LENGTH];
