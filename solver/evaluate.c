@@ -71,6 +71,16 @@ static bool place(struct suspension *s, const struct state_file *states, int sta
     return state_file_place(states, state, s, e) && neighbours_start(&s->neighbours, &s->particles, e);
 }
 
+/* The same where the answer is one array, and what a scheme keeps of each particle serves all states: none may have more or fewer of them. */
+static bool place_alike(struct suspension *s, const struct state_file *states, int state, struct error *e)
+{
+    const int before = s->particles.count;
+    if (!place(s, states, state, e))
+        return false;
+    return state == 0 || s->particles.count == before ||
+           error_raise(e, ERROR_INPUT, "case.json: state %d has %d particles where state 0 has %d; this protocol needs as many in each", state, s->particles.count, before);
+}
+
 /* Forces and torques of one force alone are in the particles' arrays afterwards; the stress is added to. */
 static void act_alone(const struct force *f, struct suspension *s, int64_t step, struct stress *stress)
 {
@@ -204,7 +214,7 @@ static bool evaluate_friction(struct simulation *sim, const struct state_file *s
         return false;
     for (int state = 0; state < count && !error_raised(e); state++) {
         bool relisted;
-        if (!place(s, states, state, e) || !neighbours_find(&s->neighbours, &s->box, p, &relisted, e))
+        if (!place_alike(s, states, state, e) || !neighbours_find(&s->neighbours, &s->box, p, &relisted, e))
             break;
         if (state == 0)
             npy_header(t.file, draws * count, p->count);
@@ -292,7 +302,7 @@ static bool evaluate_steps(struct simulation *sim, const struct state_file *stat
     for (int k = 0; k < count && !error_raised(e); k++) {
         s->step = 0;
         box_set_time(&s->box, s->start_time);
-        if (!place(s, states, k, e) || !neighbours_find(&s->neighbours, &s->box, &s->particles, &relisted, e))
+        if (!place_alike(s, states, k, e) || !neighbours_find(&s->neighbours, &s->box, &s->particles, &relisted, e))
             break;
         if (k == 0)
             npy_header(velocities.file, count * (steps + 1), s->particles.count);

@@ -261,6 +261,17 @@ static void wrong_observers_are_named(void)
     }
 }
 
+/* Two driven ones are no pair, so that walls listed first have no range among themselves; the spheres beside them have. */
+static void contacts_beside_walls_listed_first(void)
+{
+    struct error e;
+    check_true(run("{ \"about\": \"test\", \"seed\": 9, \"box\": { \"lengths\": [8, 8, 8], \"periodic\": [true, true, true] },\n"
+                   "\"species\": [ { \"name\": \"wall\", \"radius\": 1, \"density\": 1, \"motion\": \"held\" }, { \"name\": \"free\", \"radius\": 1, \"density\": 1 } ],\n"
+                   "\"forces\": { \"contact\": { \"normal_stiffness\": 100, \"friction\": 0 } },\n"
+                   "\"start\": { \"random\": { \"phi\": 0.1, \"count\": 8, \"volume_shares\": [0.5, 0.5] } },\n"
+                   "\"dynamics\": { \"verlet\": { \"dt\": 0.005 } }, \"run\": { \"steps\": 3 }, \"output\": { \"contacts\": { \"every\": 1 } } }", &e), e.text);
+}
+
 static const struct unit_test tests[] = {
     { "instants by hand", instants_by_hand },
     { "a honeycomb holds itself", a_honeycomb_holds_itself },
@@ -268,6 +279,7 @@ static const struct unit_test tests[] = {
     { "an ideal gas in a plane", ideal_gas_in_a_plane },
     { "an ideal gas has g of one", ideal_gas_has_g_of_one },
     { "free spheres diffuse", free_spheres_diffuse },
+    { "contacts beside walls that are listed first", contacts_beside_walls_listed_first },
     { "wrong observers are named", wrong_observers_are_named },
     { NULL, NULL }
 };

@@ -149,6 +149,33 @@ static void flows_across_a_plane_are_refused(void)
     }
 }
 
+/* Nothing may leave the plane: neither a driven velocity nor a sphere of a file of states. */
+static void what_leaves_a_plane_is_refused(void)
+{
+    static const char *const flat[] = { "dimensions=2", "shear=[]", "box.periodic=[true,true,false]" };
+    static const char *const rows[] = { "1,1,1,1,0.5,0,0,0,0,0,0", "1,1,1,1,0,0,0,0.1,0,0,0", "1,1,1,1,0,0,0,0,0.1,0,0", "1,1,1,1,0,0,0,0,0,0.1,0", "1,1,1,1,0,0.1,0.1,0,0,0,0.1" };
+    static const char *const motions[] = { "[0,0,1],\"spin\":[0,0,0]", "[0,0,0],\"spin\":[1,0,0]", "[0,0,0],\"spin\":[0,1,0]", "[1,1,0],\"spin\":[0,0,1]" };
+    make_folder();
+    for (int k = 0; k < 5; k++) {
+        struct error e = { 0 };
+        char text[200], start[300];
+        snprintf(text, sizeof text, "id,species,x,y,z,ux,uy,uz,wx,wy,wz\n%s\n", rows[k]);
+        write_text(in_folder("flat.csv"), text);
+        snprintf(start, sizeof start, "start={\"file\":\"%s\"}", in_folder("flat.csv"));
+        const char *const set[] = { flat[0], flat[1], flat[2], start };
+        check_true(run_with(set, 4, NULL, &e) == (k == 4), e.text);
+        check_true(k == 4 || (e.code == ERROR_INPUT && strstr(e.text, "in two dimensions they are 0")), e.text);
+    }
+    for (int k = 0; k < 4; k++) {
+        struct error e = { 0 };
+        char motion[200];
+        snprintf(motion, sizeof motion, "species[0].motion={\"velocity\":%s}", motions[k]);
+        const char *const set[] = { flat[0], flat[1], flat[2], motion, "start.random.phi=0.02" };
+        check_true(run_with(set, 5, NULL, &e) == (k == 3), e.text);
+        check_true(k == 3 || (e.code == ERROR_INPUT && strstr(e.text, "must stay in the plane")), e.text);
+    }
+}
+
 static void broken_files_are_located(void)
 {
     struct error e = { 0 };
@@ -267,6 +294,25 @@ static void cases_are_answered(void)
     write_text(in_folder("case/case.json"), "{\"protocol\":\"run\",\"scene\":\"scene.json\"}");
     check_true(evaluate_case(in_folder("case"), in_folder("answer"), &e), e.text);
     check_true(access(in_folder("answer/trajectory.csv"), R_OK) == 0, "trajectory of a run");
+    static const char *const arrays[] = { "{\"protocol\":\"steps\",\"scene\":\"scene.json\",\"states\":\"states.csv\",\"steps\":1}",
+                                          "{\"protocol\":\"friction\",\"scene\":\"scene.json\",\"states\":\"states.csv\",\"draws\":1}" };
+    for (int k = 0; k < 2; k++) {                                               /* the second state is smaller, then larger, than the first */
+        for (int larger = 0; larger < 2; larger++) {
+            struct error unlike = { 0 };
+            char text[2000];
+            snprintf(text, sizeof text, "%s", base);
+            char *scheme = strstr(text, "\"verlet\"");
+            check_true(scheme != NULL, "the scheme of the base scene");
+            if (k == 1)                                                         /* friction is a step of its own there */
+                memcpy(scheme, "\"split\" ", strlen("\"verlet\""));
+            write_text(in_folder("case/scene.json"), text);
+            write_text(in_folder("case/states.csv"), larger ? "state,id,species,x,y,z,ux,uy,uz,wx,wy,wz\n0,1,1,1,1,1,0,0,0,0,0,0\n1,1,1,1,1,1,0,0,0,0,0,0\n1,2,2,5,1,1,0,0,0,0,0,0\n"
+                                                            : "state,id,species,x,y,z,ux,uy,uz,wx,wy,wz\n0,1,1,1,1,1,0,0,0,0,0,0\n0,2,2,5,1,1,0,0,0,0,0,0\n1,1,1,1,1,1,0,0,0,0,0,0\n");
+            write_text(in_folder("case/case.json"), arrays[k]);
+            check_true(!evaluate_case(in_folder("case"), in_folder("answer"), &unlike) && unlike.code == ERROR_INPUT &&
+                       strstr(unlike.text, "particles where state 0 has"), unlike.text);
+        }
+    }
     struct error wrong = { 0 };
     write_text(in_folder("case/case.json"), "{\"protocol\":\"dance\",\"scene\":\"scene.json\"}");
     check_true(!evaluate_case(in_folder("case"), in_folder("answer"), &wrong) && strstr(wrong.text, "protocol is \"dance\""), wrong.text);
@@ -275,6 +321,7 @@ static void cases_are_answered(void)
 static const struct unit_test tests[] = {
     { "wrong values are named", wrong_values_are_named },
     { "flows across a plane are refused", flows_across_a_plane_are_refused },
+    { "what leaves a plane is refused", what_leaves_a_plane_is_refused },
     { "broken files are located", broken_files_are_located },
     { "a random start does not overlap", random_start_does_not_overlap },
     { "looking changes nothing", looking_changes_nothing },

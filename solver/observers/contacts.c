@@ -73,7 +73,11 @@ struct observer *contacts_new(struct settings *s, struct suspension *of, struct 
     o->rows.base.open = contacts_open;
     o->rows.base.observe = contacts_observe;
     o->rows.base.reads_pairs = true;
-    if (!error_raised(e) && !(of->neighbours.range[0][0] > 0.0))
+    double range = 0.0;                                 /* driven species have none among themselves */
+    for (int a = 0; a < of->particles.species_count; a++)
+        for (int b = 0; b < of->particles.species_count; b++)
+            range = fmax(range, of->neighbours.range[a][b]);
+    if (!error_raised(e) && !(range > 0.0))
         settings_refuse(s, "", e, "needs a force between pairs: without one nobody knows who touches");
     return &o->rows.base;
 }

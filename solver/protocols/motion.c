@@ -10,7 +10,7 @@
  */
 #include "protocols/protocols.h"
 
-void species_motion(struct species *kind, struct settings *s, struct error *e)
+void species_motion(struct species *kind, int dimensions, struct settings *s, struct error *e)
 {
     if (!settings_has(s, "motion") || settings_is_text(s, "motion", "free"))
         return;
@@ -21,6 +21,8 @@ void species_motion(struct species *kind, struct settings *s, struct error *e)
             settings_refuse(s, "motion", e, "must be \"free\", \"held\", or an object with velocity and spin");
         if (!error_raised(e) && (settings_numbers(&motion, "velocity", velocity, 3, e) != 3 || settings_numbers(&motion, "spin", spin, 3, e) != 3))
             settings_refuse(s, "motion", e, "must have velocity and spin, three numbers each");
+        if (!error_raised(e) && dimensions == 2 && (velocity[2] != 0.0 || spin[0] != 0.0 || spin[1] != 0.0))
+            settings_refuse(s, "motion", e, "must stay in the plane: in two dimensions velocity[2], spin[0] and spin[1] are 0");
         settings_done(&motion, e);
         kind->velocity = vec(velocity[0], velocity[1], velocity[2]);
         kind->spin = vec(spin[0], spin[1], spin[2]);

@@ -29,7 +29,7 @@ void thermal_start(struct suspension *s);
 void follow_flow(struct suspension *s);
 
 /* A species' key `motion`: "free", "held", or a velocity and a spin. */
-void species_motion(struct species *kind, struct settings *s, struct error *e);
+void species_motion(struct species *kind, int dimensions, struct settings *s, struct error *e);
 
 /* Right after particles were placed: driven ones get their velocity and spin, tethered ones their anchors. */
 void start_moving(struct particles *p);

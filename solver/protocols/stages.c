@@ -24,6 +24,7 @@
  */
 #include "protocols/protocols.h"
 
+#include <float.h>
 #include <stdlib.h>
 
 struct law { int flow, gradient; double mean, slope, amplitude, frequency, phase; };
@@ -76,13 +77,16 @@ static double travelled_of(const struct law *l, double s)
 /* Time into a stage, at most its duration; below 0 before it. */
 static double into(const struct stage *at, double time) { return fmin(time - at->begin, at->duration); }
 
+/* Moments are sums of durations or multiples of dt, which binary numbers round: 30 times 0.01 is below 0.1 + 0.2. Such two are the same moment. */
+static bool reached(double time, double moment) { return time >= moment * (1.0 - 32.0 * DBL_EPSILON); }
+
 static mat3 gradient_at(const struct flow *self, double time)
 {
     const struct stages *all = (const struct stages *)self;
     mat3 G = { { { 0.0 } } };
     for (int k = 0; k < all->count; k++) {
         const struct stage *at = &all->stage[k];
-        if (time < at->begin || time >= at->begin + at->duration)
+        if (!reached(time, at->begin) || reached(time, at->begin + at->duration))
             continue;
         for (int n = 0; n < at->laws; n++)
             G.m[at->law[n].flow][at->law[n].gradient] += rate_of(&at->law[n], time - at->begin);

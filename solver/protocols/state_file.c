@@ -140,6 +140,9 @@ bool state_file_place(const struct state_file *f, int state, struct suspension *
         if (kind != floor(kind) || kind < 1 || kind > p->species_count)
             return error_raise(e, ERROR_INPUT, "%s: particle %d of state %d has species %g; the scene has 1 to %d", f->path, i + 1, state,
                                kind, p->species_count);
+        if (in->dimensions == 2 && (v[Z] != 0.0 || v[UZ] != 0.0 || v[WX] != 0.0 || v[WY] != 0.0))
+            return error_raise(e, ERROR_INPUT, "%s: particle %d of state %d has z %g, uz %g, wx %g, wy %g; in two dimensions they are 0", f->path, i + 1, state,
+                               v[Z], v[UZ], v[WX], v[WY]);
         p->species[i] = (int)kind - 1;
         p->position[i] = vec(v[X], v[Y], v[Z]);
         p->velocity[i] = vec(v[UX], v[UY], v[UZ]);

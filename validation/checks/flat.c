@@ -75,6 +75,8 @@ void check_flat(struct check_run *run)
     scene_set(calm, "fluid.kT", json_real(0.0));
     solid = json_deep_copy(calm);
     scene_set(solid, "dimensions", json_integer(3));
+    /* In the plane spheres have no images above and below, however thin the cell is; in space the cell must be deep enough for that. */
+    scene_set(solid, "box.lengths", json_pack("[fff]", m.cell[0][0], m.cell[1][1], scene_number(parameters, "depth", NAN)));
     if (row && track_ask(run, "with-noise", scene, row, count, at, 32, &noisy)) {
         judge_plane(run, "nothing leaves the plane", &noisy);
         track_free(&noisy);
