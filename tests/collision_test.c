@@ -224,6 +224,19 @@ static void tethered_sphere_oscillates(void)
     drop(sim);
 }
 
+/* 3 % of the time that the lightest pair is in contact, pi sqrt(m_red/k). */
+static void advised_step_of_a_collision(void)
+{
+    struct error e = { 0 };
+    struct simulation *sim = scene("", COLD, "\"contact\":{\"normal_stiffness\":300,\"friction\":0}", "0.001", "1,1,1,3,3,0,0,0,0,0,0\n2,2,5,8,8,0,0,0,0,0,0\n", &e);
+    check_true(!error_raised(&e) && simulation_begin(sim, &e), e.text);
+    const struct particles *p = &sim->suspension.particles;
+    const double light = fmin(mass_of(p, 0), mass_of(p, 1));
+    check_true(fabs(mass_of(p, 0) - mass_of(p, 1)) > 0.1 * light, "unequal masses");
+    check_relative(step_advised(&sim->suspension), 0.03 * M_PI * sqrt(0.5 * light / 300), 1e-12, "advised step of a collision");
+    drop(sim);
+}
+
 static void driven_spheres_keep_their_motion(void)
 {
     struct error e = { 0 };
@@ -290,6 +303,7 @@ static const struct unit_test tests[] = {
     { "friction laws at their thresholds", friction_laws_at_their_thresholds },
     { "wrong scenes are refused", wrong_scenes_are_refused },
     { "a tethered sphere oscillates through the faces", tethered_sphere_oscillates },
+    { "advised step of a collision", advised_step_of_a_collision },
     { "driven spheres keep their motion", driven_spheres_keep_their_motion },
     { "driven spheres in the split", driven_spheres_in_the_split },
     { "history lives only above the critical load", history_lives_only_above_the_critical_load },

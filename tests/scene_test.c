@@ -256,6 +256,26 @@ static void runs_that_cannot_write_say_so(void)
     check_true(!run_with(NULL, 0, in_folder("file"), &e) && e.code == ERROR_RUN && strstr(e.text, "cannot be written"), e.text);
 }
 
+/* A frame of the dump shows the cell of its moment: sheared for 0.02, x along y, at a rate of -0.9. */
+static void pictures_show_the_sheared_cell(void)
+{
+    struct error e = { 0 };
+    make_folder();
+    check_true(run_with(NULL, 0, in_folder("pictures"), &e), e.text);
+    char *dump = contents(in_folder("pictures/dump.lammpstrj"));
+    const char *frame = strstr(dump, "ITEM: TIMESTEP\n400\n"), *bounds = frame ? strstr(frame, "BOX BOUNDS") : NULL;
+    double row[3][3] = { { 0 } };
+    check_true(bounds && sscanf(bounds, "BOX BOUNDS xy xz yz pp pp pp %lf %lf %lf %lf %lf %lf %lf %lf %lf", &row[0][0], &row[0][1], &row[0][2],
+                                &row[1][0], &row[1][1], &row[1][2], &row[2][0], &row[2][1], &row[2][2]) == 9, "the cell of the last frame");
+    const double height = row[1][1] - row[1][0], tilt = -0.9 * 0.02 * height;
+    check_close(row[0][2], tilt, 1e-8, "the edge along y leans");
+    check_close(row[0][0], tilt, 1e-8, "the corner that has moved");
+    check_close(row[0][1], height * 12.0 / 11.0, 1e-7, "the corner that has not");
+    check_close(row[1][2], 0, 0, "xz");
+    check_close(row[2][2], 0, 0, "yz");
+    free(dump);
+}
+
 /* The three protocols of a case, through files, as the gate calls them. */
 static void cases_are_answered(void)
 {
@@ -326,6 +346,7 @@ static const struct unit_test tests[] = {
     { "a random start does not overlap", random_start_does_not_overlap },
     { "looking changes nothing", looking_changes_nothing },
     { "runs that cannot write say so", runs_that_cannot_write_say_so },
+    { "pictures show the sheared cell", pictures_show_the_sheared_cell },
     { "cases are answered", cases_are_answered },
     { NULL, NULL }
 };

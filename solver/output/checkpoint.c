@@ -32,6 +32,8 @@ static void particle_fields(struct fields *f, struct particles *p)
         fields_add(f, "torque", p->torque, n * sizeof(vec3));
     if (p->turn)
         fields_add(f, "turn", p->turn, n * sizeof(vec3));
+    if (p->anchor)                                  /* the file of the start may have changed since */
+        fields_add(f, "anchor", p->anchor, n * sizeof(vec3));
 }
 
 static void box_fields(struct fields *f, struct box *b)

@@ -57,6 +57,39 @@ static void judge_plane(struct check_run *run, const char *what, const struct tr
                 "in two dimensions sphere %zu leaves the plane: z, u_z, w_x or w_y is %.3g and not exactly 0", who + 1, most);
 }
 
+/* Stresses are per volume of the cell in two dimensions too: times that, those of three. */
+static void judge_stresses(struct check_run *run, const char *flat_run, double flat_volume, const char *full_run, double full_volume)
+{
+    static const char *const origins[] = { "contact_normal", "contact_tangential", "drag", "lubrication", "kinetic" };
+    char columns[400] = "step", path[PATH_LENGTH], out[PATH_LENGTH], why[WHY_LENGTH];
+    struct table t[2];
+    struct worst w = WORST_NONE;
+    for (int k = 0; k < 5; k++)
+        snprintf(columns + strlen(columns), sizeof columns - strlen(columns), ",%s_xx,%s_xy,%s_yx,%s_yy", origins[k], origins[k], origins[k], origins[k]);
+    for (int k = 0; k < 2; k++) {
+        path_join(out, run->work, k ? full_run : flat_run);
+        path_join(path, out, "out/stress.csv");
+        if (!table_read(path, columns, &t[k], why)) {
+            if (k)
+                table_free(&t[0]);
+            check_skip(run, "stresses of three dimensions", "the candidate writes no stress.csv by origin");
+            return;
+        }
+    }
+    for (size_t k = 0; k < 20; k++) {
+        double size = 0.0;
+        for (size_t r = 0; r < t[1].rows; r++)
+            for (size_t c = k / 4 * 4; c < k / 4 * 4 + 4; c++)
+                size = fmax(size, fabs(table_at(&t[1], r, 1 + c)) * full_volume);
+        for (size_t r = 0; r < t[1].rows && r < t[0].rows; r++)
+            worst_see(&w, table_at(&t[0], r, 1 + k) * flat_volume, table_at(&t[1], r, 1 + k) * full_volume, size, k);
+    }
+    table_free(&t[0]);
+    table_free(&t[1]);
+    check_error(run, INVARIANT, "stresses of three dimensions", w.measured, w.expected, w.error, run->gate_case->tolerance,
+                "without noise the stress of %s times the volume of the cell is otherwise in two dimensions than in three: %s", origins[w.at / 4], compare(&w));
+}
+
 void check_flat(struct check_run *run)
 {
     const json_t *parameters = run->gate_case->parameters;
@@ -73,6 +106,7 @@ void check_flat(struct check_run *run)
         return;
     struct state_row *row = start_flat(run, &m, across, kT);
     scene_set(calm, "fluid.kT", json_real(0.0));
+    scene_set(calm, "output.stress", json_pack("{si}", "every", steps / 32));
     solid = json_deep_copy(calm);
     scene_set(solid, "dimensions", json_integer(3));
     /* In the plane spheres have no images above and below, however thin the cell is; in space the cell must be deep enough for that. */
@@ -88,6 +122,7 @@ void check_flat(struct check_run *run)
                 worst_see_vector(&w, flat.point[k].x, full.point[k].x, 9, 1.0, k % count);
             check_error(run, INVARIANT, "the path of three dimensions", w.measured, w.expected, w.error, run->gate_case->tolerance,
                         "without noise spheres in a plane move otherwise in two dimensions than in three: sphere %zu has %s", w.at + 1, compare(&w));
+            judge_stresses(run, "two-dimensions", m.volume, "three-dimensions", m.volume / m.cell[2][2] * scene_number(parameters, "depth", NAN));
             track_free(&full);
         }
         track_free(&flat);

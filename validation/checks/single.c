@@ -104,5 +104,5 @@ bool track_ask(struct check_run *run, const char *name, json_t *scene, const str
 }
 
 const struct check single_checks[] = { { "single-langevin", check_langevin }, { "single-shear", check_shear }, { "single-tether", check_tether },
-                                       { "single-stages", check_stages }, { "single-stages-drawn", check_stages_drawn }, { "run-length", check_run_length },     { "single-thermal", check_thermal }, { "random-start", check_random_start }, { "single-stages-pair", check_stages_pair },
+                                       { "single-stages", check_stages }, { "single-stages-drawn", check_stages_drawn }, { "run-length", check_run_length },     { "single-thermal", check_thermal }, { "random-start", check_random_start }, { "stages-moments", check_stages_moments }, { "single-stages-pair", check_stages_pair },
                                        { "single-noise-period", check_noise_period }, { NULL, NULL } };

@@ -43,6 +43,7 @@ void check_stages_drawn(struct check_run *run);
 void check_run_length(struct check_run *run);
 void check_thermal(struct check_run *run);
 void check_random_start(struct check_run *run);
+void check_stages_moments(struct check_run *run);
 void check_stages_pair(struct check_run *run);
 void check_noise_period(struct check_run *run);
 
