@@ -48,6 +48,9 @@ void describe_provenance(struct simulation *sim, const char *scene, const struct
                         SHEAR_VERSION, scene, sim->about, sim->suspension.key.seed, sim->suspension.key.realisation, sim->suspension.dt);
     for (int k = 0; k < options->set_count && used < 1200; k++)
         used += snprintf(to->provenance + used, sizeof to->provenance - (size_t)used, "# --set %.100s\n", options->set[k]);
+    for (char *c = to->provenance; *c; c++)             /* a text may have line breaks of its own */
+        if (*c == '\r' || (*c == '\n' && c[1] && strncmp(c + 1, "# ", 2) != 0))
+            *c = ' ';
 }
 
 /*

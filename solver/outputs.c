@@ -38,6 +38,8 @@ bool run_build(struct settings *root, struct simulation *sim, struct error *e)
         duration = fmax(0.0, s->box.flow->duration - s->start_time);
     else
         duration = settings_at_least(&run, "time", 0.0, e);
+    if (!error_raised(e) && !(duration / s->dt < 0x1p47))
+        error_raise(e, ERROR_INPUT, "run: %g steps are more than 2^47", duration / s->dt);
     if (duration > 0.0 && !error_raised(e))
         sim->last_step = (int64_t)ceil(duration / s->dt * (1.0 - 1e-12));
     return settings_done(&run, e);

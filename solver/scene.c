@@ -59,22 +59,6 @@ static bool build_box(struct settings *root, struct suspension *s, struct error 
     return !error_raised(e) && driven_box(root, s, &cell, periodic, e);
 }
 
-static bool build_species(struct settings *root, struct particles *p, int dimensions, struct error *e)
-{
-    const int kinds = settings_length(root, "species", e);
-    if (!error_raised(e) && (kinds < 1 || kinds > MAX_SPECIES))
-        settings_refuse(root, "species", e, "must list 1 to %d species", MAX_SPECIES);
-    for (int k = 0; k < kinds && !error_raised(e); k++) {
-        struct settings kind = settings_item(root, "species", k, e);
-        const char *name = settings_text(&kind, "name", e);
-        const double radius = settings_positive(&kind, "radius", e), density = settings_positive(&kind, "density", e);
-        p->kind[p->species_count] = species_sphere(name, radius, density);
-        species_motion(&p->kind[p->species_count++], dimensions, &kind, e);
-        settings_done(&kind, e);
-    }
-    return !error_raised(e);
-}
-
 static bool build_forces(struct settings *root, struct suspension *s, struct error *e)
 {
     struct settings forces = settings_child(root, "forces", e);
@@ -119,7 +103,7 @@ static bool build(struct settings *root, const char *path, const struct scene_op
     s->kinetic_origin = stress_origin(&s->stress, "kinetic");
     /* Keys that are known also where only forces are asked for; the schema is for editors. */
     settings_has(root, "run"), settings_has(root, "output"), settings_has(root, "$schema");
-    return build_fluid(root, s, e) && build_key(root, s, e) && build_box(root, s, e) && build_species(root, &s->particles, s->dimensions, e) &&
+    return build_fluid(root, s, e) && build_key(root, s, e) && build_box(root, s, e) && species_build(root, &s->particles, s->dimensions, e) &&
            build_forces(root, s, e) && dynamics_choose(root, s, &sim->dynamics, &chosen, e) && suspension_start(root, path, options->states, s, e) &&
            step_choose(&chosen, s, e) && (options->frozen || (run_build(root, sim, e) && outputs_build(root, sim, e))) &&
            settings_done(root, e) && (options->states || neighbours_start(&s->neighbours, &s->particles, e));

@@ -23,6 +23,11 @@ static void prepare_stress(struct simulation *sim, int64_t step)
 static bool observe(struct simulation *sim, struct error *e)
 {
     struct suspension *s = &sim->suspension;
+    bool looked = s->step == sim->last_step;
+    for (int k = 0; k < sim->observer_count; k++)
+        looked = looked || is_due(sim->observer[k], s->step);
+    if (looked && !particles_finite(&s->particles, s->box.time, e))
+        return false;
     if (s->measuring) {
         stress_kinetic(&s->stress, s->kinetic_origin, &s->box, &s->particles);
         stress_finish(&s->stress, s->box.volume);

@@ -292,6 +292,52 @@ static void jumps_in_rounded_moments(void)
     remove(states);
 }
 
+/*
+ * Wherever in a step a rate jumps, also after a start before time 0: at every row spheres that follow the flow have its velocity, and have come as far as
+ * the cell is sheared, to the last digits, whether they are followed in the cell or from where they started, a cell higher.
+ */
+static void jumps_anywhere_in_a_step(void)
+{
+    static const char *const schemes[] = { "verlet", "predicted_verlet", "split" };
+    static const double durations[] = { 0.05, 0.0503, 0.0505, 0.0497, 0.0495, 0.05999 }, begins[] = { 0.0, -0.0045, -0.0055, -0.025, -3.00049 }, height[] = { 4.1, 10.4 };
+    char states[100], rest[600], stages[400];
+    struct error e;
+    done_with(scene_of("[]", crowd, &e));                                       /* gives `path` its name */
+    snprintf(states, sizeof states, "%s.csv", path);
+    for (int k = 0; k < 3 * 6 * 5; k++) {
+        const double begin = begins[k / 18];
+        FILE *out = fopen(states, "w");
+        fputs("id,species,x,y,z,ux,uy,uz,wx,wy,wz\n", out);
+        for (int i = 0; i < 2; i++)
+            fprintf(out, "%d,1,%g,%g,0.2,%.17g,0,0,0,0,0\n", i + 1, 4.9 + i, height[i], begin < 0.0 ? 0.0 : 3.0 * height[i]);
+        fclose(out);
+        snprintf(stages, sizeof stages, "[ { \"duration\": %.5f, \"shear\": [ { \"flow\": \"x\", \"gradient\": \"y\", \"rate\": 3 } ] },"
+                 "  { \"duration\": 9, \"shear\": [ { \"flow\": \"x\", \"gradient\": \"y\", \"rate\": -4 } ] } ]", durations[k / 3 % 6]);
+        snprintf(rest, sizeof rest, "\"box\": { \"lengths\": [5.1, 6.3, 4.7], \"periodic\": [true, true, true] }, \"start\": { \"file\": \"%s\", \"time\": %.6f },\n"
+                 "\"forces\": { \"contact\": { \"normal_stiffness\": 100, \"friction\": 0 } }, \"dynamics\": { \"%s\": { \"dt\": 0.001 } }, "
+                 "\"run\": { \"steps\": 1 }", states, begin, schemes[k % 3]);
+        struct simulation *sim = scene_of(stages, rest, &e);
+        check_true(!error_raised(&e) && simulation_begin(sim, &e), e.text);
+        struct suspension *s = &sim->suspension;
+        const double before = s->box.flow->strain(s->box.flow, begin).m[0][1];
+        double velocity = 0.0, place = 0.0;
+        for (sim->last_step = 1; sim->last_step <= 70 - (int)(1000.0 * begin); sim->last_step++) {
+            check_true(simulation_run(sim, &e), e.text);
+            const double strain = s->box.flow->strain(s->box.flow, s->box.time).m[0][1] - before;
+            for (int i = 0; i < 2; i++) {
+                const vec3 off = box_unwrapped(&s->box, s->particles.image[i]), x = plus(s->particles.position[i], off);
+                const vec3 u = plus(s->particles.velocity[i], box_flow(&s->box, off));
+                velocity = fmax(velocity, fabs(u.x - box_flow(&s->box, x).x));
+                place = fmax(place, fabs(x.x - 4.9 - i - strain * height[i]));
+            }
+        }
+        check_close(velocity, 0, 1e-10, "velocity of the flow");          /* a rounding of t over dt, of 70 */
+        check_close(place, 0, 1e-10, "as far as the cell is sheared");
+        done_with(sim);
+    }
+    remove(states);
+}
+
 static void wrong_stages_are_named(void)
 {
     static const char *const wrong[][2] = {
@@ -323,6 +369,7 @@ static const struct unit_test tests[] = {
     { "a reversal keeps images alike", reversal_keeps_images_alike },
     { "a row at a jump of the rate", row_at_a_jump },
     { "jumps in rounded moments", jumps_in_rounded_moments },
+    { "jumps anywhere in a step", jumps_anywhere_in_a_step },
     { "wrong stages are named", wrong_stages_are_named },
     { NULL, NULL }
 };

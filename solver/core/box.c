@@ -74,7 +74,8 @@ bool box_new(struct box *b, const mat3 *cell, const bool periodic[3], const mat3
             if (g != 0.0 && (flows[0] != 0.0 || flows[1] != 0.0 || flows[2] != 0.0))
                 return error_raise(e, ERROR_INPUT, "shear or stages: %c is a flow axis of one shear and the gradient axis of another; then "
                                                    "images accelerate even in steady flow, and no two of a sphere alike", "xyz"[c]);
-            b->tilts[r][c] = g != 0.0;
+            for (int k = 0; k < 3; k++)
+                b->tilts[r][c] = b->tilts[r][c] || (r != c && gradient->m[r][k] != 0.0 && cell->m[k][c] != 0.0);
             if (b->tilts[r][c] && periodic[c] && !periodic[r])
                 return error_raise(e, ERROR_INPUT, "box.periodic: flow along %c with a periodic gradient axis %c needs %c periodic too",
                                    "xyz"[r], "xyz"[c], "xyz"[r]);

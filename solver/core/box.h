@@ -21,7 +21,7 @@
 
 struct box {
     mat3 start;                     /* H(0)              [L] */
-    mat3 gradient, image_gradient, mean_gradient;   /* G; of velocities between two kicks: of the middle of the step; of full steps: at a jump the mean of both sides [1/T] */
+    mat3 gradient, image_gradient, mean_gradient;   /* G; that of velocities between two kicks: the mean over the step; that of full steps (core/flow.h) [1/T] */
     struct flow *flow;              /* G(t); NULL: steady */
     bool periodic[3];
     bool flowing;                   /* G is not zero */

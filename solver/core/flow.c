@@ -10,9 +10,11 @@ mat3 flow_deformation(const struct flow *f, double from, double to)
     return F;
 }
 
-mat3 flow_mean(const struct flow *f, double time, double aside)
+mat3 flow_of_row(const struct flow *f, double time, double dt)
 {
-    const mat3 before = f->gradient(f, time - aside), after = f->gradient(f, time + aside);
+    if (!f->ends(f, time - dt, time + dt))
+        return f->gradient(f, time);
+    const mat3 before = f->mean(f, time - dt, time), after = f->mean(f, time, time + dt);
     mat3 G;
     for (int k = 0; k < 9; k++)
         G.m[k / 3][k % 3] = 0.5 * (before.m[k / 3][k % 3] + after.m[k / 3][k % 3]);

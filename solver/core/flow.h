@@ -15,13 +15,19 @@ struct flow {
     mat3 largest;                                               /* of |G|, entry by entry, over all times [1/T] */
     int flow_axis, gradient_axis;                               /* of the first shear that is named: the plane that tables speak of */
     double duration;                                            /* from then on the flow is at rest [T] */
-    mat3 (*gradient)(const struct flow *self, double time);     /* G(t) */
+    double rounding;                                            /* times that differ by less are one moment [T] */
+    mat3 (*gradient)(const struct flow *self, double time);     /* G(t); where a rate jumps, that of the stage that begins */
+    mat3 (*mean)(const struct flow *self, double from, double to);  /* [S(to) - S(from)]/(to - from), without the rounding of differences */
+    bool (*ends)(const struct flow *self, double from, double to);  /* does a stage begin or end in between? */
     mat3 (*strain)(const struct flow *self, double time);       /* S(t), in closed form */
     double (*travelled)(const struct flow *self, double time);  /* strain however it turned: integral of |rate| from 0 */
 };
 
 mat3 flow_deformation(const struct flow *f, double from, double to);
-/* [G(t - aside) + G(t + aside)]/2: where a rate jumps, the mean of both sides. `aside`: more than times are rounded, far less than a step [T]. */
-mat3 flow_mean(const struct flow *f, double time, double aside);
+/*
+ * The flow of a full step, as spheres have it that follow the flow: G(t), but the mean over the steps before and after where one of them holds the end
+ * of a stage, for half of the push is given in each.
+ */
+mat3 flow_of_row(const struct flow *f, double time, double dt);
 
 #endif

@@ -202,11 +202,8 @@ static bool near_room(struct near_pairs *near, int room, struct error *e)
 
 static bool make_list(struct neighbours *n, struct box *box, struct particles *p, struct error *e)
 {
-    for (int i = 0; i < p->count; i++)
-        if (!isfinite(dot(p->position[i], p->position[i])) || !isfinite(dot(p->velocity[i], p->velocity[i])))
-            return error_raise(e, ERROR_RUN, "particle %d left the numbers at time %.9g: position (%g, %g, %g), velocity (%g, %g, %g)",
-                               p->tag[i], box->time, p->position[i].x, p->position[i].y, p->position[i].z,
-                               p->velocity[i].x, p->velocity[i].y, p->velocity[i].z);
+    if (!particles_finite(p, box->time, e))
+        return false;
     /* A list that lives less than ten steps costs more than the pairs of a thicker skin, and the other way round. */
     if (n->made && n->steps_since < 10)
         n->skin = fmin(1.5 * n->skin, 0.25 * n->largest_range);

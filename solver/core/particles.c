@@ -36,6 +36,17 @@ void particles_free(struct particles *p)
     p->position = p->velocity = p->force = p->spin = p->torque = p->anchor = p->turn = NULL;
 }
 
+bool particles_finite(const struct particles *p, double time, struct error *e)
+{
+    for (int i = 0; i < p->count; i++) {
+        const vec3 x = p->position[i], u = p->velocity[i], w = p->spin ? p->spin[i] : vec(0, 0, 0);
+        if (!isfinite(dot(x, x)) || !isfinite(dot(u, u)) || !isfinite(dot(w, w)))
+            return error_raise(e, ERROR_RUN, "particle %d left the numbers at time %.9g: position (%g, %g, %g), velocity (%g, %g, %g), spin (%g, %g, %g)",
+                               p->tag[i], time, x.x, x.y, x.z, u.x, u.y, u.z, w.x, w.y, w.z);
+    }
+    return true;
+}
+
 struct species species_sphere(const char *name, double radius, double density)
 {
     struct species s = { .radius = radius, .density = density };

@@ -40,6 +40,8 @@ struct particles {
 /* Arrays for `count` particles at rest in place of what was there; the species stay. */
 bool particles_allocate(struct particles *p, int count, bool rotation, struct error *e);
 void particles_free(struct particles *p);
+/* False, saying which, where a place, a velocity or a spin is no number any more. */
+bool particles_finite(const struct particles *p, double time, struct error *e);
 struct species species_sphere(const char *name, double radius, double density);
 
 static inline double radius_of(const struct particles *p, int i) { return p->kind[p->species[i]].radius; }

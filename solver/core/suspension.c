@@ -29,9 +29,9 @@ void suspension_take(struct suspension *s, struct force *f)
 bool suspension_find(struct suspension *s, bool *relisted, struct error *e)
 {
     struct box *b = &s->box;
-    const double middle = s->start_time + ((double)s->step - 0.5) * s->dt;
+    const double end = s->start_time + (double)s->step * s->dt;
     if (b->flow && s->step > 0)         /* a run starts with the flow that there is: box_set_time */
-        b->image_gradient = b->flow->gradient(b->flow, middle), b->mean_gradient = flow_mean(b->flow, b->time, 1e-6 * s->dt);
+        b->image_gradient = b->flow->mean(b->flow, end - s->dt, end), b->mean_gradient = flow_of_row(b->flow, end, s->dt);
     return neighbours_find(&s->neighbours, &s->box, &s->particles, relisted, e);
 }
 

@@ -49,6 +49,8 @@ struct force *applied_new(struct settings *s, const struct suspension *in, struc
         const bool pushed = read_vector(&own, "force", &law->force[a], e), turned = read_vector(&own, "torque", &law->torque[a], e);
         if (!pushed && !turned)
             settings_refuse(s, p->kind[a].name, e, "must have force, torque or both");
+        if (!error_raised(e) && in->dimensions == 2 && (law->force[a].z != 0.0 || law->torque[a].x != 0.0 || law->torque[a].y != 0.0))
+            settings_refuse(s, p->kind[a].name, e, "must stay in the plane: in two dimensions force[2], torque[0] and torque[1] are 0");
         law->base.rotates = law->base.rotates || turned;
         settings_done(&own, e);
     }

@@ -14,6 +14,9 @@ mat3 brownian_stress_of(const struct snapshot *at, const struct suspension *s, d
     mat3 sum = { { { 0.0 } } };
     for (int k = 0; k < at->search.near.count; k++) {
         const struct pair *pair = &at->search.near.pair[k];
+        const struct species *one = &at->particles.kind[at->particles.species[pair->i]], *other = &at->particles.kind[at->particles.species[pair->j]];
+        if (one->driven && other->driven)               /* no pair: nothing could come of it */
+            continue;
         const double end[2] = { radius_of(&at->particles, pair->i), radius_of(&at->particles, pair->j) };
         for (int side = 0; side < 2; side++)
             if (pair->gap < fraction * end[side])

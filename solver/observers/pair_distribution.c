@@ -70,9 +70,9 @@ static bool distribution_observe(struct observer *self, const struct suspension 
         if (pair->i == pair->j)
             continue;
         if (pair->distance < o->range)
-            o->far[type * o->bins + (int)(pair->distance / o->range * o->bins)]++;
+            o->far[type * o->bins + (int)fmin(pair->distance / o->range * o->bins, o->bins - 1)]++;
         if (o->near_bins && fabs(pair->gap) < o->near_gap)
-            o->near[type * o->near_bins + (int)((pair->gap / o->near_gap + 1.0) * 0.5 * o->near_bins)]++;
+            o->near[type * o->near_bins + (int)fmin((pair->gap / o->near_gap + 1.0) * 0.5 * o->near_bins, o->near_bins - 1)]++;
         if (o->plane_bins)
             count_in_plane(o, &plane, scaled(pair->normal, pair->distance));
     }

@@ -56,7 +56,7 @@ static void track_remember(struct observer *self, struct fields *f)
     struct track *t = (struct track *)self;
     const size_t rows = (size_t)(lags_rows(&t->lags) * t->of->particles.species_count * (TRACKED + 1));
     fields_add(f, t->name_taken, &t->lags.taken, sizeof t->lags.taken);
-    fields_add(f, t->name_ring, t->lags.ring, (size_t)(t->levels * LAG_WIDTH * t->lags.values) * sizeof(double));
+    fields_add(f, t->name_ring, t->lags.ring, (size_t)t->levels * LAG_WIDTH * (size_t)t->lags.values * sizeof(double));
     fields_add(f, t->name_sum, t->sum, rows * sizeof(double));
 }
 

@@ -7,7 +7,8 @@
 
 bool destination_make(struct destination *to, const char *folder, struct error *e)
 {
-    snprintf(to->folder, sizeof to->folder, "%s", folder);
+    if (snprintf(to->folder, sizeof to->folder, "%s", folder) >= (int)sizeof to->folder)
+        return error_raise(e, ERROR_INPUT, "the name of the folder to write to has %zu letters; it may have %zu", strlen(folder), sizeof to->folder - 1);
     if (mkdir(folder, 0777) == 0 || errno == EEXIST)
         return true;
     return error_raise(e, ERROR_RUN, "%s cannot be made: %s", folder, strerror(errno));
@@ -19,6 +20,9 @@ bool table_open(struct table *t, const struct destination *to, const char *name,
     t->file = fopen(t->path, to->resuming ? "a" : "w");
     if (!t->file)
         return error_raise(e, ERROR_RUN, "%s cannot be written: %s", t->path, strerror(errno));
+    struct stat info;
+    t->resumed = to->resuming && fstat(fileno(t->file), &info) == 0;
+    t->found = t->resumed ? (int64_t)info.st_size : 0;
     fputs(to->provenance, t->file);
     return true;
 }
@@ -34,11 +38,12 @@ bool table_check(struct table *t, struct error *e)
 static bool cut_back(void *table, struct error *e)
 {
     struct table *t = table;
-    struct stat info;
-    if (fflush(t->file) != 0 || fstat(fileno(t->file), &info) != 0 || ftruncate(fileno(t->file), (off_t)t->length) != 0)
+    if (t->found < t->length)
+        return error_raise(e, ERROR_INPUT, "%s is shorter than the %lld bytes that the checkpoint knows of", t->path, (long long)t->length);
+    if (fflush(t->file) != 0 || ftruncate(fileno(t->file), (off_t)t->length) != 0)
         return error_raise(e, ERROR_RUN, "%s cannot be cut back to %lld bytes: %s", t->path, (long long)t->length, strerror(errno));
-    return (int64_t)info.st_size >= t->length ||
-           error_raise(e, ERROR_INPUT, "%s is shorter than the %lld bytes that the checkpoint knows of", t->path, (long long)t->length);
+    t->resumed = false;
+    return true;
 }
 
 void table_remember(struct table *t, const char *name, struct fields *f)
@@ -54,6 +59,8 @@ bool table_close(struct table *t, struct error *e)
 {
     if (!t->file)
         return true;
+    if (t->resumed && (fflush(t->file) != 0 || ftruncate(fileno(t->file), (off_t)t->found) != 0))
+        error_raise(e, ERROR_RUN, "%s cannot be left as it was: %s", t->path, strerror(errno));
     const bool good = table_check(t, e), closed = fclose(t->file) == 0;
     t->file = NULL;
     return (good && closed) || error_raise(e, ERROR_RUN, "%s could not be written in full: %s", t->path, strerror(errno));

@@ -9,9 +9,11 @@
 /* The folder that a run writes to; made if it is not there. */
 bool destination_make(struct destination *to, const char *folder, struct error *e);
 
-struct table { FILE *file; char path[512]; int64_t length; /* as far as it has been written, for checkpoints */ };
+/* length: as far as it has been written, for checkpoints. found: how long it was when a resumed run opened it, until the checkpoint has been put in place. */
+struct table { FILE *file; char path[512]; int64_t length; bool resumed; int64_t found; };
 
-/* A run that is resumed goes on with the table that is there; its header, written again, is cut off with the rest. */
+/* A run that is resumed goes on with the table that is there; its header, written again, is cut off with the rest. One that is not gone
+ * on with after all is left as it was. */
 bool table_open(struct table *t, const struct destination *to, const char *name, struct error *e);
 /* Fails if anything of the table was not written: the disk may be full. */
 bool table_check(struct table *t, struct error *e);

@@ -10,7 +10,10 @@
  */
 #include "protocols/protocols.h"
 
-void species_motion(struct species *kind, int dimensions, struct settings *s, struct error *e)
+#include <ctype.h>
+#include <string.h>
+
+static void read_motion(struct species *kind, int dimensions, struct settings *s, struct error *e)
 {
     if (!settings_has(s, "motion") || settings_is_text(s, "motion", "free"))
         return;
@@ -29,6 +32,40 @@ void species_motion(struct species *kind, int dimensions, struct settings *s, st
     }
     kind->driven = true;
     kind->mass = kind->inertia = INFINITY;
+}
+
+/* Columns of tables and keys of forces are called after species. */
+static void check_name(const char *name, const struct particles *p, struct settings *s, struct error *e)
+{
+    for (const char *c = name; *c && !error_raised(e); c++)
+        if (*c == ',' || *c == '"' || iscntrl((unsigned char)*c))
+            settings_refuse(s, "name", e, "must have no comma, quote or line break");
+    if (!error_raised(e) && strlen(name) >= sizeof p->kind->name)
+        settings_refuse(s, "name", e, "must have at most %zu letters", sizeof p->kind->name - 1);
+    for (int k = 0; k < p->species_count && !error_raised(e); k++)
+        if (strcmp(name, p->kind[k].name) == 0)
+            settings_refuse(s, "name", e, "is the name of species %d already", k + 1);
+}
+
+/* "species": [ { "name": "small", "radius": 1.0, "density": 0.1, "motion": "free" } ] */
+bool species_build(struct settings *root, struct particles *p, int dimensions, struct error *e)
+{
+    const int kinds = settings_length(root, "species", e);
+    if (!error_raised(e) && (kinds < 1 || kinds > MAX_SPECIES))
+        settings_refuse(root, "species", e, "must list 1 to %d species", MAX_SPECIES);
+    for (int k = 0; k < kinds && !error_raised(e); k++) {
+        struct settings kind = settings_item(root, "species", k, e);
+        const char *name = settings_text(&kind, "name", e);
+        const double radius = settings_positive(&kind, "radius", e), density = settings_positive(&kind, "density", e);
+        if (!error_raised(e))
+            check_name(name, p, &kind, e);
+        if (error_raised(e))
+            return false;
+        p->kind[p->species_count] = species_sphere(name, radius, density);
+        read_motion(&p->kind[p->species_count++], dimensions, &kind, e);
+        settings_done(&kind, e);
+    }
+    return !error_raised(e);
 }
 
 void start_moving(struct particles *p)

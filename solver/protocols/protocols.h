@@ -28,8 +28,8 @@ void thermal_start(struct suspension *s);
 /* Velocities that follow the flow, spins of half its vorticity. */
 void follow_flow(struct suspension *s);
 
-/* A species' key `motion`: "free", "held", or a velocity and a spin. */
-void species_motion(struct species *kind, int dimensions, struct settings *s, struct error *e);
+/* The scene's list of species: sizes, masses and motion. */
+bool species_build(struct settings *root, struct particles *p, int dimensions, struct error *e);
 
 /* Right after particles were placed: driven ones get their velocity and spin, tethered ones their anchors. */
 void start_moving(struct particles *p);

@@ -19,12 +19,12 @@
  *     F_i = m_i (dG/dt) x_i
  *
  * the force by which the accelerating liquid carries along a body of its own density. It is applied as the impulse
- * m [G(t + dt/2) - G(t - dt/2)] x over a step, which is finite also where a rate jumps. Where the gradient axis is open there
+ * m [<G> of the next step - <G> of the last] x, <G> = [S(t + dt) - S(t)]/dt: finite also where a rate jumps, at whatever moment
+ * of a step, and what follows the flow then drifts as far in each step as the cell is sheared. Where the gradient axis is open there
  * are no such images, the force is absent, and a particle lags behind the flow by its own inertia.
  */
 #include "protocols/protocols.h"
 
-#include <float.h>
 #include <stdlib.h>
 
 struct law { int flow, gradient; double mean, slope, amplitude, frequency, phase; };
@@ -78,7 +78,7 @@ static double travelled_of(const struct law *l, double s)
 static double into(const struct stage *at, double time) { return fmin(time - at->begin, at->duration); }
 
 /* Moments are sums of durations or multiples of dt, which binary numbers round: 30 times 0.01 is below 0.1 + 0.2. Such two are the same moment. */
-static bool reached(double time, double moment) { return time >= moment * (1.0 - 32.0 * DBL_EPSILON); }
+static bool reached(const struct stages *all, double time, double moment) { return time >= moment - all->base.rounding; }
 
 static mat3 gradient_at(const struct flow *self, double time)
 {
@@ -86,12 +86,48 @@ static mat3 gradient_at(const struct flow *self, double time)
     mat3 G = { { { 0.0 } } };
     for (int k = 0; k < all->count; k++) {
         const struct stage *at = &all->stage[k];
-        if (!reached(time, at->begin) || reached(time, at->begin + at->duration))
+        if (!reached(all, time, at->begin) || reached(all, time, at->begin + at->duration))
             continue;
         for (int n = 0; n < at->laws; n++)
             G.m[at->law[n].flow][at->law[n].gradient] += rate_of(&at->law[n], time - at->begin);
     }
     return G;
+}
+
+/* The mean rate from a to b. */
+static double mean_rate_of(const struct law *l, double a, double b)
+{
+    const double middle = 0.5 * (a + b), angle = 0.5 * l->frequency * (b - a);
+    const double swing = l->amplitude != 0.0 ? l->amplitude * sin(l->frequency * middle + l->phase) * (angle > 0.0 ? sin(angle) / angle : 1.0) : 0.0;
+    return l->mean + l->slope * middle + swing;
+}
+
+enum { SLIVER = 1000000000 };           /* a stage that fills all but so small a part of a step fills it: the rest is rounding */
+
+static mat3 mean_over(const struct flow *self, double from, double to)
+{
+    const struct stages *all = (const struct stages *)self;
+    mat3 G = { { { 0.0 } } };
+    for (int k = 0; k < all->count; k++) {
+        const struct stage *at = &all->stage[k];
+        const double a = fmax(from, at->begin), b = fmin(to, at->begin + at->duration), part = (b - a) / (to - from);
+        for (int n = 0; n < at->laws && part * SLIVER > 1.0; n++)
+            G.m[at->law[n].flow][at->law[n].gradient] += ((1.0 - part) * SLIVER < 1.0 ? 1.0 : part) * mean_rate_of(&at->law[n], a - at->begin, b - at->begin);
+    }
+    return G;
+}
+
+static bool ends_between(const struct flow *self, double from, double to)
+{
+    const struct stages *all = (const struct stages *)self;
+    const double sliver = (to - from) / SLIVER;
+    for (int k = 0; k < all->count; k++)
+        for (int side = 0; side < 2; side++) {
+            const double moment = all->stage[k].begin + side * all->stage[k].duration;
+            if (moment > from + sliver && moment < to - sliver)
+                return true;
+        }
+    return false;
 }
 
 static mat3 strain_at(const struct flow *self, double time)
@@ -187,7 +223,7 @@ struct flow *stages_new(struct settings *root, struct error *e)
     struct stages *all = calloc(1, sizeof *all + (size_t)count * sizeof *all->stage);
     if (!all)
         return error_out_of_memory(e), NULL;
-    all->base = (struct flow){ .gradient = gradient_at, .strain = strain_at, .travelled = travelled_at };
+    all->base = (struct flow){ .gradient = gradient_at, .mean = mean_over, .ends = ends_between, .strain = strain_at, .travelled = travelled_at };
     if (settings_has(root, "shear") && settings_length(root, "shear", e) > 0)
         settings_refuse(root, "stages", e, "must not stand beside shear, which is the steady flow");
     for (int k = 0; k < count && !error_raised(e); k++) {
@@ -213,9 +249,9 @@ static void inertia_add(const struct force *self, struct particles *p, struct ne
 {
     const struct flow *flow = now->box->flow;
     (void)self, (void)near, (void)stress;
-    /* A run starts with the flow that there is: its first kick, half as long, leads from G(t) to G(t + dt/2). */
+    /* A run starts with the flow that there is: its first kick, half as long, leads from G(t) to the mean over the first step. */
     const double t = now->box->time, duration = now->step > 0 ? now->dt : 0.5 * now->dt;
-    const mat3 after = flow->gradient(flow, t + 0.5 * now->dt), before = flow->gradient(flow, now->step > 0 ? t - 0.5 * now->dt : t);
+    const mat3 after = flow->mean(flow, t, t + now->dt), before = now->step > 0 ? flow->mean(flow, t - now->dt, t) : flow->gradient(flow, t);
     mat3 change;
     bool changes = false;
     for (int k = 0; k < 9; k++) {

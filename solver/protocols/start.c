@@ -1,5 +1,6 @@
 #include "protocols/protocols.h"
 
+#include <float.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -18,6 +19,8 @@ bool suspension_start(struct settings *root, const char *scene_path, const char 
 {
     struct settings start = settings_child(root, "start", e);
     s->start_time = start.node ? settings_number_or(&start, "time", 0.0, e) : 0.0;
+    if (s->box.flow)
+        s->box.flow->rounding = 32.0 * DBL_EPSILON * (fabs(s->start_time) + s->box.flow->duration);
     box_set_time(&s->box, s->start_time);
     box_remap(&s->box);
     const bool thermal = start.node && settings_flag_or(&start, "thermal", false, e);

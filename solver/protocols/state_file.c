@@ -15,6 +15,18 @@ struct state_file { char path[256]; int rows, states; struct row *row; int *firs
 
 enum { LINE = 4096, FIELDS = 64 };
 
+/* The next cell of a line, which may be empty; NULL after the last. */
+static char *next_cell(char **rest)
+{
+    char *cell = *rest;
+    if (!cell)
+        return NULL;
+    char *end = cell + strcspn(cell, ",\r\n");
+    *rest = *end == ',' ? end + 1 : NULL;
+    *end = '\0';
+    return cell;
+}
+
 /* Which column of the file is which of ours; -1: not one that we read. */
 static bool read_header(char *line, int field[FIELDS], const char *path, struct error *e)
 {
@@ -22,9 +34,11 @@ static bool read_header(char *line, int field[FIELDS], const char *path, struct 
     char *rest = line, *name;
     for (int f = 0; f < FIELDS; f++)
         field[f] = -1;
-    for (int f = 0; f < FIELDS && (name = strtok_r(rest, ",\r\n", &rest)); f++)
+    for (int f = 0; f < FIELDS && (name = next_cell(&rest)); f++)
         for (int c = 0; c < COLUMNS; c++)
             if (strcmp(name, column_name[c]) == 0) {
+                if (seen[c])
+                    return error_raise(e, ERROR_INPUT, "%s: column \"%s\" is there twice", path, name);
                 field[f] = c;
                 seen[c] = true;
             }
@@ -39,7 +53,7 @@ static bool read_row(char *line, const int field[FIELDS], struct row *row, const
     char *rest = line, *text;
     int found = 0;
     memset(row, 0, sizeof *row);
-    for (int f = 0; f < FIELDS && (text = strtok_r(rest, ",\r\n", &rest)); f++) {
+    for (int f = 0; f < FIELDS && (text = next_cell(&rest)); f++) {
         if (field[f] < 0)
             continue;
         char *end;
@@ -60,13 +74,13 @@ static bool index_states(struct state_file *f, struct error *e)
     if (!f->first)
         return error_out_of_memory(e);
     for (int r = 0; r < f->rows; r++) {
-        const int state = (int)f->row[r].value[STATE];
+        const double state = f->row[r].value[STATE];
         if (r == 0 || state != f->states - 1) {
             if (state != f->states)
-                return error_raise(e, ERROR_INPUT, "%s: state %d where %d is due; states count from 0, each in one piece", f->path, state, f->states);
+                return error_raise(e, ERROR_INPUT, "%s: state %g where %d is due; states count from 0, each in one piece", f->path, state, f->states);
             f->first[f->states++] = r;
         }
-        if ((int)f->row[r].value[ID] != r - f->first[f->states - 1] + 1)
+        if (f->row[r].value[ID] != r - f->first[f->states - 1] + 1)
             return error_raise(e, ERROR_INPUT, "%s: id %g where %d is due; ids count from 1 in each state", f->path, f->row[r].value[ID],
                                r - f->first[f->states - 1] + 1);
     }
@@ -143,6 +157,10 @@ bool state_file_place(const struct state_file *f, int state, struct suspension *
         if (in->dimensions == 2 && (v[Z] != 0.0 || v[UZ] != 0.0 || v[WX] != 0.0 || v[WY] != 0.0))
             return error_raise(e, ERROR_INPUT, "%s: particle %d of state %d has z %g, uz %g, wx %g, wy %g; in two dimensions they are 0", f->path, i + 1, state,
                                v[Z], v[UZ], v[WX], v[WY]);
+        const vec3 inside = mat3_times(&in->box.inverse, vec(v[X], v[Y], v[Z]));
+        for (int k = 0; k < 3; k++)
+            if (!(fabs(k == 0 ? inside.x : k == 1 ? inside.y : inside.z) < 1e9))
+                return error_raise(e, ERROR_INPUT, "%s: particle %d of state %d lies more than 1e9 cells away at (%g, %g, %g)", f->path, i + 1, state, v[X], v[Y], v[Z]);
         p->species[i] = (int)kind - 1;
         p->position[i] = vec(v[X], v[Y], v[Z]);
         p->velocity[i] = vec(v[UX], v[UY], v[UZ]);

@@ -23,7 +23,10 @@
 double film_radius(const struct film *f, size_t i) { return f->m.radius[f->row[i].species - 1]; }
 double film_mass(const struct film *f, size_t i) { return 4.0 / 3.0 * M_PI * f->m.density[f->row[i].species - 1] * gsl_pow_3(film_radius(f, i)); }
 
-/* The flow of each frame, and its integral from time 0 on. Where a rate jumps (docs/physics.md) velocities have half of the jump, spins nothing. */
+/*
+ * The flow of each frame, and its integral from time 0 on. A frame within a step of the end of a stage (docs/physics.md): velocities have half of each
+ * push, which is what the flow has in the mean over the steps before and after; spins are compared with the flow that there is.
+ */
 static bool find_flow(struct film *f)
 {
     double way;
@@ -32,19 +35,27 @@ static bool find_flow(struct film *f)
     f->strain = calloc(f->frames, sizeof *f->strain);
     const bool good = f->flow && f->turning && f->strain;
     for (size_t s = 0; good && s < f->frames; s++) {
-        const double time = f->begin + (double)s * f->every * f->dt, aside = s > 0 ? 1e-9 * f->dt : 0.0;
+        const double time = f->begin + (double)s * f->every * f->dt;
+        double before[3][3], after[3][3], end = 0.0;
+        bool near = false;
         memcpy(f->turning[s], f->m.gradient, sizeof f->m.gradient);
         for (int k = 0; k < 9; k++)
             f->strain[s][k / 3][k % 3] = f->m.gradient[k / 3][k % 3] * time;
-        double before[3][3];
-        memcpy(before, f->m.gradient, sizeof before);
+        for (size_t n = 0; s > 0 && n < f->stages; n++) {
+            end += f->stage[n].duration;
+            near = near || fabs(time - end) < (1.0 - 1e-9) * f->dt;
+        }
         if (f->stages) {
-            theory_driven_flow(f->stage, f->stages, time - aside, before, &way);
-            theory_driven_flow(f->stage, f->stages, time + aside, f->turning[s], &way);
+            theory_driven_flow(f->stage, f->stages, time + (near ? 1e-9 * f->dt : 0.0), f->turning[s], &way);
             stages_strain(f->stage, f->stages, time, f->strain[s]);
         }
-        for (int k = 0; k < 9; k++)
-            f->flow[s][k / 3][k % 3] = 0.5 * (before[k / 3][k % 3] + f->turning[s][k / 3][k % 3]);
+        memcpy(f->flow[s], f->turning[s], sizeof f->turning[s]);
+        if (near) {
+            stages_strain(f->stage, f->stages, time - f->dt, before);
+            stages_strain(f->stage, f->stages, time + f->dt, after);
+            for (int k = 0; k < 9; k++)
+                f->flow[s][k / 3][k % 3] = (after[k / 3][k % 3] - before[k / 3][k % 3]) / (2.0 * f->dt);
+        }
     }
     return good;
 }

@@ -251,7 +251,7 @@ void film_structure(const struct film *f, size_t frame, double shell, double dep
         for (int side = 0; side < 2; side++) {
             const struct near_pair *p = &f->near[frame][k];
             const double a = film_radius(f, side ? p->j : p->i);
-            for (int c = 0; p->gap < shell * a && c < 6; c++)
+            for (int c = 0; !p->told && p->gap < shell * a && c < 6; c++)
                 S[c] -= f->kT / f->m.volume * a / (shell * a + depth) * p->n[c < 3 ? c : c == 5] * p->n[c < 3 ? c : c == 3 ? 1 : 2];
         }
 }
