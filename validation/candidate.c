@@ -242,7 +242,9 @@ void candidate_run(const struct candidate *c, const char *case_dir, const char *
 /* The program file behind the first word of the command, as the shell would find it. */
 static bool find_program(const char *command, char path[PATH_LENGTH])
 {
-    const int n = (int)strcspn(command, " \t");
+    const bool quoted = *command == '\'' || *command == '"';
+    const int n = (int)(quoted ? strcspn(command + 1, *command == '"' ? "\"" : "'") : strcspn(command, " \t"));
+    command += quoted;
     snprintf(path, PATH_LENGTH, "%.*s", n, command);
     if (strchr(path, '/'))
         return access(path, X_OK) == 0;

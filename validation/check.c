@@ -91,7 +91,12 @@ struct result *check_error(struct check_run *run, enum judgement judgement, cons
     r->error = error;
     r->tolerance = tolerance;
     r->verdict = error <= tolerance ? VERDICT_PASS : VERDICT_FAIL;
-    if (r->verdict == VERDICT_FAIL && run->allowance > 0)
+    if (error < 0) {                            /* WORST_NONE: of all that should have been compared nothing was there */
+        free(r->sentence);
+        r->sentence = copy_text("nothing was compared: what the candidate wrote has not one of the rows that are asked for");
+        r->verdict = VERDICT_FAIL;
+    }
+    if (r->verdict == VERDICT_FAIL && run->allowance > 0 && !(error < 0))
         allow_for_precision(run, r);
     return r;
 }
@@ -156,7 +161,11 @@ bool check_table(struct check_run *run, const char *out, const char *file, const
     char path[PATH_LENGTH], why[WHY_LENGTH];
     path_join(path, out, file);
     if (access(path, F_OK) != 0) {
-        check_skip(run, what, "the candidate writes no %s", file);
+        if (capabilities_list(run->candidate->capabilities, "observers"))
+            check_error(run, INVARIANT, what, NAN, NAN, NAN, NAN, "the scene asks for %s, and the candidate has not written it; one that has no tables of a run declares so: "
+                        "capabilities without \"observers\" (docs/adapter.md)", file);
+        else
+            check_skip(run, what, "the candidate writes no %s", file);
         return false;
     }
     if (!table_read(path, columns, t, why)) {

@@ -98,7 +98,7 @@ static const char trajectory_columns[] = "step,time,id,x,y,z,ux,uy,uz,wx,wy,wz,s
 static bool pretend_run(struct invention *i, const struct question *q, const char *out)
 {
     const double n = question_steps(q->scene), rate = scene_number(json_array_get(scene_get(q->scene, "shear"), 0), "rate", 0);
-    const double dt = question_dt(q->scene), frames = scene_number(q->scene, "output.states.every", 0), tables = scene_number(q->scene, "output.stress.every", 0);
+    const double begin = scene_number(q->scene, "start.time", 0.0), dt = question_dt(q->scene), frames = scene_number(q->scene, "output.states.every", 0), tables = scene_number(q->scene, "output.stress.every", 0);
     const json_t *at = scene_get(q->scene, "output.states.at");
     const size_t count = q->states ? q->states : (size_t)scene_number(q->scene, "start.random.count", 1);
     FILE *file = open_table(out, "trajectory.csv"), *stress = open_table(out, "stress.csv");
@@ -110,16 +110,16 @@ static bool pretend_run(struct invention *i, const struct question *q, const cha
     fputs(trajectory_columns, file);
     json_array_foreach(at, k, step)
     {
-        snprintf(keys, sizeof keys, "%lld,%.17g", (long long)json_integer_value(step), dt * json_number_value(step));
+        snprintf(keys, sizeof keys, "%lld,%.17g", (long long)json_integer_value(step), begin + dt * json_number_value(step));
         pretend_frame(i, file, q, count, keys, rate);
     }
     for (double s = 0; frames > 0 && s <= n; s += frames) {
-        snprintf(keys, sizeof keys, "%.0f,%.17g", s, s * dt);
+        snprintf(keys, sizeof keys, "%.0f,%.17g", s, begin + s * dt);
         pretend_frame(i, file, q, count, keys, rate);
     }
     stress_header(stress, "step,time,strain");
     for (double s = 0; tables > 0 && s <= n; s += tables) {
-        fprintf(stress, "%.0f,%.17g,%.17g", s, s * dt, s * dt * fabs(rate));
+        fprintf(stress, "%.0f,%.17g,%.17g", s, begin + s * dt, s * dt * fabs(rate));
         if (s + tables <= n)
             invent_row(i, stress, 63);
         else    /* whatever was held together has parted */

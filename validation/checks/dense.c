@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 bool dense_start_in(struct check_run *run, const json_t *scene, const json_t *par, unsigned seed, struct dense_start *s)
 {
@@ -51,7 +52,19 @@ void dense_start_free(struct dense_start *s)
 
 const char *dense_reference(void)
 {
-    return getenv("GATE_REFERENCE") ? getenv("GATE_REFERENCE") : "build/lammps-candidate --own reference";
+    static char beside[PATH_LENGTH + 64];
+    const char *named = getenv("GATE_REFERENCE"), *here = "build/lammps-candidate --own reference";
+    if (named || access("build/lammps-candidate", X_OK) == 0)
+        return named ? named : here;
+    char gate[PATH_LENGTH];                     /* called from elsewhere: it lies beside the gate */
+    const ssize_t n = readlink("/proc/self/exe", gate, sizeof gate - 1);
+    gate[n > 0 ? n : 0] = '\0';
+    char *slash = strrchr(gate, '/');
+    if (!slash)
+        return here;
+    *slash = '\0';
+    snprintf(beside, sizeof beside, "'%s/lammps-candidate' --own reference", gate);
+    return beside;
 }
 
 bool dense_ask_both(struct check_run *run, const char *name, const struct dense_start *s, char out[2][PATH_LENGTH], double core_seconds[2])

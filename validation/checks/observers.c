@@ -150,6 +150,55 @@ static void find_pairs(struct film *f, size_t frame)
         }
 }
 
+/* How many lags a table has: 16 at one frame, then 8 at every doubling of it, as long as the run has two frames so far apart. */
+static size_t lags_due(const struct film *f, const char *table)
+{
+    char key[96];
+    snprintf(key, sizeof key, "tables.%s.levels", table);
+    const double levels = scene_number(f->run->gate_case->parameters, key, NAN);
+    size_t due = 0, width = 1;
+    for (int level = 0; level < levels; level++, width *= 2)
+        for (size_t lag = level ? 9 : 1; lag <= 16; lag++)
+            due += lag * width < f->frames;
+    return due;
+}
+
+/* How many rows a table must have; 0: as many as it has. */
+static size_t rows_due(const struct film *f, const char *file)
+{
+    const json_t *p = f->run->gate_case->parameters;
+    const double pairs = 0.5 * (double)(f->m.species * (f->m.species + 1));
+    if (strcmp(file, "displacement.csv") == 0)
+        return f->m.species * lags_due(f, "displacement");
+    if (strcmp(file, "velocity_correlation.csv") == 0)
+        return f->m.species * (lags_due(f, "velocity_correlation") + 1);
+    if (strcmp(file, "green_kubo.csv") == 0)
+        return lags_due(f, "green_kubo") + 1;
+    if (strcmp(file, "pair_distribution.csv") == 0)
+        return (size_t)(pairs * (scene_number(p, "tables.pair_distribution.bins", 0.0) + scene_number(p, "tables.pair_distribution.near.bins", 0.0)));
+    if (strcmp(file, "pair_plane.csv") == 0)
+        return (size_t)gsl_pow_2(scene_number(p, "tables.pair_distribution.plane.bins", 0.0));
+    return strcmp(file, "averages.csv") == 0 ? 0 : f->frames;
+}
+
+/* The moments of a table that has a row for each of them. */
+static bool moments_are_right(const struct film *f, const char *file, char why[WHY_LENGTH])
+{
+    char path[PATH_LENGTH];
+    struct table t;
+    path_join(path, f->out, file);
+    if (!table_read(path, "step,time", &t, why))
+        return false;
+    bool good = true;
+    for (size_t r = 0; r < t.rows && good; r++) {
+        const double step = (double)r * f->every, time = f->begin + step * f->dt;
+        if (table_at(&t, r, 0) != step || fabs(table_at(&t, r, 1) - time) > 1e-3 * f->dt + 1e-5 * fabs(time))       /* however few digits */
+            good = why_not(why, "%s: row %zu is of step %g at time %g where step %g at time %g is due", file, r + 1, table_at(&t, r, 0), table_at(&t, r, 1), step, time);
+    }
+    table_free(&t);
+    return good;
+}
+
 /* False where the case does not ask for the table, where the candidate has not written it (skipped) or it cannot be read (recorded). */
 bool film_table(const struct film *f, const char *file, const char *columns, struct table *t)
 {
@@ -157,7 +206,19 @@ bool film_table(const struct film *f, const char *file, const char *columns, str
     snprintf(asked, sizeof asked, "tables.%.*s", (int)strcspn(file, "."), file);
     if (strcmp(file, "stress.csv") != 0 && !scene_get(f->run->gate_case->parameters, strcmp(file, "pair_plane.csv") ? asked : "tables.pair_distribution.plane"))
         return false;
-    return check_table(f->run, f->out, file, columns, file, t);
+    char why[WHY_LENGTH];
+    const size_t due = rows_due(f, file);
+    if (!check_table(f->run, f->out, file, columns, file, t))
+        return false;
+    bool good = !due || t->rows == due || why_not(why, "%s has %zu rows where the case asks for %zu", file, t->rows, due);
+    static const char *const of_moments[] = { "temperature.csv", "contacts.csv", "viscosity.csv", "brownian_stress.csv", "stress.csv" };
+    for (size_t k = 0; good && k < sizeof of_moments / sizeof *of_moments; k++)
+        good = strcmp(file, of_moments[k]) != 0 || moments_are_right(f, file, why);
+    if (!good) {
+        check_garbage(f->run, why);
+        table_free(t);
+    }
+    return good;
 }
 
 /* The frame of a row whose first column is the step. */

@@ -21,6 +21,19 @@ void film_judge_distribution(const struct film *f)
         return;
     for (size_t i = 0; i < f->count; i++)
         of[f->row[i].species - 1] += 1.0;
+    size_t each[4][4] = { { 0 } };
+    for (size_t r = 0; r < t.rows; r++) {
+        const double one = table_at(&t, r, 1), two = table_at(&t, r, 2);
+        if (one < 1 || two < 1 || one > (double)f->m.species || two > (double)f->m.species || one != floor(one) || two != floor(two)) {
+            check_garbage(f->run, "pair_distribution.csv: a species is none of the scene's");
+            table_free(&t);
+            return;
+        }
+        each[(int)fmin(one, two) - 1][(int)fmax(one, two) - 1]++;
+    }
+    for (size_t a = 0; a < f->m.species; a++)
+        for (size_t b = a; b < f->m.species; b++)
+            worst_see(&counts, (double)each[a][b], (double)each[0][0], 1.0, 0);      /* as many bins for each pair of species */
     for (size_t r = 0; r < t.rows; r++) {
         const int a = (int)table_at(&t, r, 1), b = (int)table_at(&t, r, 2);
         const bool near = strcmp(table_word(&t, r, 0), "near") == 0;
@@ -266,6 +279,15 @@ void film_judge_averages(const struct film *f)
     size_t rows = 0;
     if (!film_table(f, "averages.csv", "quantity$,mean,error,samples,discarded", &t))
         return;
+    static const char *const due[] = { "shear", "N1", "N2", "pressure", "T", "W", "contacts" };
+    for (size_t k = 0; k < sizeof due / sizeof *due; k++) {
+        size_t found = 0;
+        for (size_t r = 0; r < t.rows; r++)
+            found += strcmp(table_word(&t, r, 0), due[k]) == 0;
+        worst_see(&dropped, (double)found, 1.0, 1.0, k);                /* each is there once */
+    }
+    for (size_t r = 0; r < t.rows; r++)
+        worst_see(&dropped, table_at(&t, r, 3), (double)f->frames, 1.0, r);
     double (*S)[5] = total_stress(f, &rows), *x = calloc(f->frames, sizeof *x);
     for (size_t r = 0; r < t.rows && S && rows == f->frames; r++) {
         double terms = 0.0;

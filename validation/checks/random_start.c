@@ -20,7 +20,7 @@ enum { MOST = 4 };
 static double *ask_start(struct check_run *run, const char *name, const json_t *scene, size_t count, struct track *t, struct table *stress)
 {
     const int at[1] = { 1 };
-    char out[PATH_LENGTH], path[PATH_LENGTH], why[WHY_LENGTH];
+    char out[PATH_LENGTH], path[PATH_LENGTH], why[WHY_LENGTH] = "stress.csv has no row";
     json_t *asked = json_deep_copy(scene);
     scene_set(asked, "run", json_pack("{si}", "steps", at[0]));
     scene_set(asked, "output", json_pack("{s{si}s{si}}", "states", "every", 1, "stress", "every", 1));

@@ -40,7 +40,7 @@ static void judge_table(struct check_run *run, const char *file, const char *who
 {
     char *first = text_of(whole, file), *second = text_of(paused, file), *a = first, *b = second;
     struct worst w = { .measured = 1.0, .expected = 1.0 };
-    size_t line = 1;
+    size_t line = 1, numbers = 0;
     if (!first) {
         check_skip(run, file, "the candidate writes no %s", file);
         free(second);
@@ -53,6 +53,7 @@ static void judge_table(struct check_run *run, const char *file, const char *who
             if (x != y && !(isnan(x) && isnan(y)))      /* -kT ln 0 is infinite in both */
                 worst_see(&w, y, x, fmax(fabs(x), 1e-6), line);
             a = a_end, b = b_end;
+            numbers++;
             continue;
         }
         if (*a != *b)
@@ -60,7 +61,7 @@ static void judge_table(struct check_run *run, const char *file, const char *who
         line += *a == '\n';
         a++, b++;
     }
-    if (!b || *a || *b)
+    if (!b || *a || *b || numbers == 0)
         worst_see(&w, NAN, 0.0, 1.0, line);
     check_error(run, INVARIANT, file, w.measured, w.expected, w.error, run->gate_case->tolerance,
                 "%s is not the same after a pause: line %zu says %s; something that is summed over the run was lost, or counted twice", file, w.at, compare(&w));

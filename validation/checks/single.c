@@ -27,10 +27,33 @@ void track_free(struct track *t)
 }
 
 /* Rows of other steps (the start, say) are ignored; each row asked for must be there once. */
-static bool track_read(const char *path, const int *at, struct track *t, char why[WHY_LENGTH])
+/* The step of whichever scheme the scene names; NaN if it is not a number. */
+static double step_of(const json_t *scene)
+{
+    const char *key;
+    json_t *scheme;
+    json_object_foreach(scene_get(scene, "dynamics"), key, scheme)
+        return scene_number(scheme, "dt", NAN);
+    return NAN;
+}
+
+struct clock { double begin, dt; const struct state_row *start; /* NULL: not known */ };
+
+/* Whether a row is of its moment, and of a sphere of its species; however few digits the time has. */
+static bool row_is_right(const struct table *t, size_t r, const struct clock *c, char why[WHY_LENGTH])
+{
+    const double step = table_at(t, r, 0), id = table_at(t, r, 1), said = table_at(t, r, 14), species = table_at(t, r, 15), time = c->begin + step * c->dt;
+    if (isfinite(said) && isfinite(time) && fabs(said - time) > 1e-3 * c->dt + 1e-5 * fabs(time))
+        return why_not(why, "%s: step %g has the time %g where %g is due", t->path, step, said, time);
+    if (c->start && isfinite(species) && species != c->start[(size_t)id - 1].species)
+        return why_not(why, "%s: particle %g is of species %g where the start says %d", t->path, id, species, c->start[(size_t)id - 1].species);
+    return true;
+}
+
+static bool track_read(const char *path, const int *at, const struct clock *clock, struct track *t, char why[WHY_LENGTH])
 {
     struct table table;
-    if (!table_read(path, "step,id,x,y,z,ux,uy,uz,wx?,wy?,wz?,turn_x?,turn_y?,turn_z?", &table, why))
+    if (!table_read(path, "step,id,x,y,z,ux,uy,uz,wx?,wy?,wz?,turn_x?,turn_y?,turn_z?,time?,species?", &table, why))
         return false;
     const size_t rows = t->steps * t->count;
     bool *found = calloc(rows, sizeof *found), good = found != NULL;
@@ -55,6 +78,8 @@ static bool track_read(const char *path, const int *at, struct track *t, char wh
             good = why_not(why, "%s: particle %g has two rows at step %g", path, id, step);
             break;
         }
+        if (clock && !(good = row_is_right(&table, r, clock, why)))
+            break;
         found[row] = true;
         missing--;
         double *value = t->point[row].x;     /* x, u, w, turn lie one after the other */
@@ -82,16 +107,21 @@ void track_want(json_t *scene, const int *at, size_t steps)
         scene_set(scene, "output.states.turn", json_true());
 }
 
-bool track_load(struct check_run *run, const char *out, const int *at, size_t steps, size_t count, struct track *t)
+static bool load(struct check_run *run, const char *out, const int *at, size_t steps, size_t count, const struct clock *clock, struct track *t)
 {
     char path[PATH_LENGTH], why[WHY_LENGTH];
     *t = (struct track){ .steps = steps, .count = count, .point = calloc(steps * count, sizeof *t->point) };
     path_join(path, out, "trajectory.csv");
-    if (t->point && track_read(path, at, t, why))
+    if (t->point && track_read(path, at, clock, t, why))
         return true;
     check_garbage(run, t->point ? why : "the gate is out of memory");
     track_free(t);
     return false;
+}
+
+bool track_load(struct check_run *run, const char *out, const int *at, size_t steps, size_t count, struct track *t)
+{
+    return load(run, out, at, steps, count, NULL, t);
 }
 
 bool track_ask(struct check_run *run, const char *name, json_t *scene, const struct state_row *start, size_t count, const int *at,
@@ -100,7 +130,8 @@ bool track_ask(struct check_run *run, const char *name, json_t *scene, const str
     char out[PATH_LENGTH];
     track_want(scene, at, steps);
     const struct question q = { .protocol = "run", .scene = scene, .state = start, .states = count };
-    return check_ask(run, name, &q, out) && track_load(run, out, at, steps, count, t);
+    const struct clock clock = { scene_number(scene, "start.time", 0.0), step_of(scene), start };
+    return check_ask(run, name, &q, out) && load(run, out, at, steps, count, &clock, t);
 }
 
 const struct check single_checks[] = { { "single-langevin", check_langevin }, { "single-shear", check_shear }, { "single-tether", check_tether },

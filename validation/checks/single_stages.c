@@ -92,10 +92,14 @@ static void flow_of_row(const struct theory_stage *stage, size_t stages, double 
     }
 }
 
-/* Drag's stress and the strain of every row against the flow of that moment; `travelled`: the strain before the run began. False after recording that it cannot be read. */
+/* The moments of a table: every so many steps, `rows` in all; `travelled`: the strain before the run began. */
+struct rows_of_run { double begin, dt, travelled; int every; size_t rows; };
+
+/* Drag's stress and the strain of every row against the flow of that moment. False after recording that it cannot be read. */
 static bool judge_flow(struct check_run *run, const char *drive, const char *name, const struct model *m, const struct theory_stage *stage, size_t stages,
-                       double dt, double travelled)
+                       const struct rows_of_run *of)
 {
+    const double dt = of->dt, travelled = of->travelled;
     char path[PATH_LENGTH], out[PATH_LENGTH], why[WHY_LENGTH], what[96];
     struct table t;
     struct worst stress = WORST_NONE, strain = WORST_NONE, plane = WORST_NONE;
@@ -103,6 +107,17 @@ static bool judge_flow(struct check_run *run, const char *drive, const char *nam
     path_join(path, out, "out/stress.csv");
     if (!table_read(path, "time,strain,drag_xx,drag_xy,drag_xz,drag_yx,drag_yy,drag_yz,drag_zx,drag_zy,drag_zz", &t, why)) {
         check_garbage(run, why);
+        return false;
+    }
+    bool good = table_expect_rows(&t, of->rows, why);
+    for (size_t r = 0; r < t.rows && good; r++) {
+        const double time = of->begin + (double)r * of->every * dt;
+        if (fabs(table_at(&t, r, 0) - time) > 1e-3 * dt + 1e-5 * fabs(time))
+            good = why_not(why, "%s: row %zu is of time %g where %g is due", t.path, r + 1, table_at(&t, r, 0), time);
+    }
+    if (!good) {
+        check_garbage(run, why);
+        table_free(&t);
         return false;
     }
     const double phi = SPHERES * 4.0 / 3.0 * M_PI * gsl_pow_3(m->radius[0]) / m->volume, unit = 2.5 * phi * m->viscosity;
@@ -129,7 +144,11 @@ static bool judge_flow(struct check_run *run, const char *drive, const char *nam
     snprintf(what, sizeof what, "%s: rate and stress in the plane", drive);
     if (check_table(run, path, "viscosity.csv", "rate,shear_drag,shear", what, &t)) {
         const struct theory_rate *first = &stage[0].shear[0];
-        for (size_t r = 0; r < t.rows && r < rows; r++) {
+        for (size_t r = 0; r < rows; r++) {
+            if (r >= t.rows) {
+                worst_see(&plane, NAN, 0.0, 1.0, r);            /* a row is missing */
+                break;
+            }
             const double rate = flow[r][first->flow][first->gradient], shear = unit * (rate + flow[r][first->gradient][first->flow]);
             worst_see(&plane, table_at(&t, r, 0), rate, 1.0, r);
             worst_see(&plane, table_at(&t, r, 1), shear, phi * m->viscosity, r);
@@ -200,7 +219,7 @@ static bool try_drive(struct check_run *run, const json_t *drive, size_t number)
         scene_set(scene, "dynamics.verlet.dt", json_real(ldexp(o.dt, -r)));
         scene_set(scene, "output.stress", json_pack("{si}", "every", 1));
         scene_set(scene, "output.viscosity", json_pack("{si}", "every", 1));
-        good = track_ask(run, name, scene, start, SPHERES, at, steps, &track[r]) && (r || judge_flow(run, label, name, &m, stage, stages, o.dt, 0.0));
+        good = track_ask(run, name, scene, start, SPHERES, at, steps, &track[r]) && (r || judge_flow(run, label, name, &m, stage, stages, &(struct rows_of_run){ 0.0, o.dt, 0.0, 1, (size_t)at[steps - 1] + 1 }));
     }
     for (size_t k = 0; k < steps; k++)
         at[k] = (int)list[k];
@@ -271,6 +290,17 @@ static void judge_displacement(struct check_run *run, const char *label, const c
     snprintf(what, sizeof what, "%s: displacement beyond the flow's", label);
     if (!check_table(run, out, "displacement.csv", "lag,msd_x,msd_y,msd_z,turn_x,turn_y,turn_z", what, &t))
         return;
+    size_t due = 0;                             /* lags of three levels */
+    for (size_t width = 1; width <= 4; width *= 2)
+        for (size_t lag = width > 1 ? 9 : 1; lag <= 16; lag++)
+            due += lag * width < LATE_FRAMES;
+    if (t.rows != due) {
+        char why[WHY_LENGTH];
+        snprintf(why, sizeof why, "displacement.csv has %zu rows where the case asks for %zu lags", t.rows, due);
+        check_garbage(run, why);
+        table_free(&t);
+        return;
+    }
     for (size_t k = 0; k < 3; k++)
         largest = fmax(largest, expected[LONGEST][k]);
     for (size_t r = 0; r < t.rows; r++) {
@@ -343,7 +373,7 @@ bool stages_try_late(struct check_run *run, const json_t *drive, size_t number, 
         apply(G, start[i].x, start[i].u);
     snprintf(name, sizeof name, "late-%zu", number);
     snprintf(what, sizeof what, "%s, from the middle on", label);
-    const bool good = track_ask(run, name, scene, start, SPHERES, at, LATE_FRAMES, &track) && judge_flow(run, what, name, &m, stage, stages, dt, way);
+    const bool good = track_ask(run, name, scene, start, SPHERES, at, LATE_FRAMES, &track) && judge_flow(run, what, name, &m, stage, stages, &(struct rows_of_run){ begin, dt, way, every, LATE_FRAMES });
     if (good) {
         judge_carried(run, what, stage, stages, begin, every * dt, m.radius[0], start, &track);
         double turns[LONGEST + 1][3] = { { 0 } };
