@@ -151,6 +151,9 @@ memcheck: all ## valgrind on one run of everything at once
 adapters: all ## the worked examples of docs/adapter.md (Fortran, Python, a LAMMPS dump) and mistakes planted in them
 	@tools/adapters/adapters.sh $B
 
+corrupted: all ## right answers, spoilt on the way (rows, steps, times, files missing): each must be noticed
+	@BUILD=$B tools/corrupted.py $(ONLY)
+
 scenes: all ## run every sample scene and draw its plot (at most 20 s each)
 	@tools/scenes.sh
 
@@ -225,6 +228,6 @@ help: ## this list
 clean: ## remove build/
 	rm -rf $B
 
-.PHONY: all setup validate test lines coverage sanitize memcheck adapters scenes faults calibrate levels seeds bench scaling golden retrace engine engine-cost second-opinion ci-files \
+.PHONY: all setup validate test lines coverage sanitize memcheck adapters corrupted scenes faults calibrate levels seeds bench scaling golden retrace engine engine-cost second-opinion ci-files \
 	suite-manifest findings vectors audit verdicts work-precision help clean FORCE
 -include $(patsubst %.o,%.d,$(call objects,$(SOLVER) $(GATE) $(TESTS) $(ENGINE) $(GOLDEN) $(AUDIT) tools/compare/checkpoints.c tools/compare/retrace.c))

@@ -131,6 +131,13 @@ static void conventions_are_named(void)
     expect(judge(exact, options), 0, "2 passed");
     expect(judge("sh tests/altered.sh 's/.friction.: .*,/\\\"friction\\\":0.44,/' ", "--case contact-friction"), 1, "1 failed");
     check_true(strstr(said, "everything agrees") == NULL, "a mistake is no convention");
+    /* Nor are noise that is too weak, whose p-values no second sample judges here, and whole answers of a program that ended with an error. */
+    snprintf(options, sizeof options, "--case equipartition %s", capabilities("\"level\": \"A\""));
+    expect(judge("sh tests/altered.sh 's/.kT.: .*/\\\"kT\\\": 2.6e-9/' ", options), 1, "its noise does not balance its");
+    check_true(strstr(said, "everything agrees") == NULL, "too weak a noise is no convention");
+    snprintf(options, sizeof options, "--case contact-friction %s", capabilities("\"level\": \"A\""));
+    expect(judge("sh tests/ends_badly.sh ", options), 1, "ended with exit code 1");
+    check_true(strstr(said, "everything agrees") == NULL, "no answer is no convention");
 }
 
 /* --- answers made elsewhere --- */
