@@ -267,6 +267,23 @@ static void half_a_cell_is_remapped_once(void)
     }
 }
 
+/* An edge that has a part along the gradient axis is carried along, whatever it is called; it stays as short as it can be. */
+static void leaning_edges_stay_compact(void)
+{
+    const mat3 flow = { { { 0, 0.7, 0 }, { 0 }, { 0 } } }, cell = { { { 10, 0, 0 }, { 0, 10, 3 }, { 0, 0, 10 } } };
+    const bool periodic[3] = { true, true, true };
+    struct box b;
+    struct error e = { 0 };
+    check_true(box_new(&b, &cell, periodic, &flow, &e), e.text);
+    for (int n = 0; n < 400; n++) {
+        box_set_time(&b, 7.3 * n);
+        box_remap(&b);
+        for (int c = 1; c < 3; c++)
+            check_true(fabs(b.cell.m[0][c]) <= 5.0 + 1e-6, "lean of B and C");
+        check_true(box_width(&b, 0) > 5.0, "width");
+    }
+}
+
 /* Two particles of one rigid body never interact; in open directions nobody has images. */
 static void bodies_and_open_sides(void)
 {
@@ -302,6 +319,7 @@ static const struct unit_test tests[] = {
     { "wrapping and remap change no physics", wrapping_changes_no_physics },
     { "contact history survives faces and remaps", history_survives_remap },
     { "a tilt of half a cell is remapped once", half_a_cell_is_remapped_once },
+    { "leaning edges stay compact", leaning_edges_stay_compact },
     { "lost and coincident particles are named", lost_particles_are_named },
     { "bodies and open sides", bodies_and_open_sides },
     { NULL, NULL }

@@ -157,6 +157,37 @@ static void the_run_has_remaps_and_lists(void)
     free(sim);
 }
 
+/* A table that was cut short, or emptied, is no table to go on with: refused twice in the same words, and every table stays as it was. */
+static void short_tables_are_refused(void)
+{
+    struct error e;
+    whole();
+    check_true(run("run.steps=300", in_folder("short"), false, &e) == 0, e.text);
+    for (int emptied = 0; emptied < 2; emptied++) {
+        char table[200], other[200];
+        size_t length, before, after;
+        snprintf(table, sizeof table, "%s/short/%s", folder, emptied ? "stress.csv" : "trajectory.csv");
+        snprintf(other, sizeof other, "%s/short/viscosity.csv", folder);
+        char *text = contents(table, &length), *kept = contents(other, &before);
+        check_true(truncate(table, emptied ? 0 : (off_t)length - 60) == 0, "cut short");
+        for (int twice = 0; twice < 2; twice++) {
+            size_t size;
+            check_true(run(NULL, in_folder("short"), true, &e) == ERROR_INPUT && strstr(e.text, "is shorter than the"), e.text);
+            free(contents(table, &size));
+            check_close((double)size, emptied ? 0 : (double)length - 60, 0, "left as it was");
+            char *same = contents(other, &after);
+            check_true(before == after && memcmp(same, kept, before) == 0, "another table left as it was");
+            free(same);
+        }
+        FILE *out = fopen(table, "wb");
+        check_true(out && fwrite(text, 1, length, out) == length && fclose(out) == 0, "put back");
+        free(text);
+        free(kept);
+    }
+    check_true(run(NULL, in_folder("short"), true, &e) == 0, e.text);
+    check_same(whole(), in_folder("short"), "after all");
+}
+
 /* One flow along two gradients, one oscillating, one that jumps: the box's state follows from the time alone. */
 static void staged_runs_go_on(void)
 {
@@ -319,6 +350,7 @@ static void doubtful_checkpoints_are_refused(void)
 static const struct unit_test tests[] = {
     { "the run has remaps, lists and frictional contacts", the_run_has_remaps_and_lists },
     { "a run split in two is the whole run", split_runs_are_the_whole },
+    { "short tables are refused", short_tables_are_refused },
     { "a run in stages goes on", staged_runs_go_on },
     { "a run at rest goes on", runs_at_rest_go_on },
     { "runs of the other integrators go on", other_integrators_go_on },

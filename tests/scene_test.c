@@ -98,6 +98,7 @@ static void wrong_values_are_named(void)
         { "box.lengths=[1,2]", "box.lengths" },
         { "box.periodic=[true,true]", "box.periodic" },
         { "box.periodic=[false,true,true]", "needs x periodic too" },
+        { "box={\"cell\":[[12,0,0],[0,11,0],[0,3,13]],\"periodic\":[true,false,true]}", "vector 3, which is periodic, has a part along y" },
         { "shear[0].gradient=\"x\"", "must differ from the flow's axis" },
         { "shear[0].rate=null", "shear[0].rate is null" },
         { "species=[]", "must list 1 to" },
@@ -113,6 +114,14 @@ static void wrong_values_are_named(void)
         { "dynamics.verlet.rotation=\"off\"", "a force of this scene turns particles" },
         { "dynamics.verlet.dt=0", "dynamics.verlet.dt is 0" },
         { "dynamics.verlet.dt=0.01", "take dt at most" },
+        { "dynamics={\"verlet\":{\"dt\":1e-5},\"split\":{\"dt\":1e-5}}", "it names several" },
+        { "dynamics={\"split\":{\"dt\":1e-5,\"residual\":2}}", "residual is 2; it must be above 0 and at most 0.01" },
+        { "dynamics={\"split\":{\"dt\":1e-5,\"residual\":0}}", "residual is 0" },
+        { "species[1].name=\"small\"", "is the name of species 1 already" },
+        { "species[1].name=\"a,b\"", "must have no comma" },
+        { "species[1].name=\"two\\nlines\"", "must have no comma, quote or line break" },
+        { "species[1].name=\"abcdefghijklmnopqrstuvwxyzabcdef\"", "at most 31 letters" },
+        { "run={\"time\":1e20}", "more than 2^47" },
         { "run={}", "run.time is missing" },
         { "run.steps=1.5", "run.steps is 1.5; it must be a whole number" },
         { "run={\"strain\":-1}", "run.strain" },
@@ -166,6 +175,13 @@ static void what_leaves_a_plane_is_refused(void)
         check_true(run_with(set, 4, NULL, &e) == (k == 4), e.text);
         check_true(k == 4 || (e.code == ERROR_INPUT && strstr(e.text, "in two dimensions they are 0")), e.text);
     }
+    static const char *const others[][2] = { { "box={\"cell\":[[12,0,3],[0,11,0],[0,0,13]],\"periodic\":[true,true,true]}", "box.cell: the first two vectors have a part along z" },
+                                             { "forces.applied={\"small\":{\"force\":[0,0,1]}}", "forces.applied.small must stay in the plane" } };
+    for (int k = 0; k < 2; k++) {
+        struct error e = { 0 };
+        const char *const set[] = { flat[0], flat[1], others[k][0], "start.random.phi=0.02" };
+        check_true(!run_with(set, 4, NULL, &e) && e.code == ERROR_INPUT && strstr(e.text, k ? "must stay in the plane" : others[k][1]), e.text);
+    }
     for (int k = 0; k < 4; k++) {
         struct error e = { 0 };
         char motion[200];
@@ -189,7 +205,11 @@ static void broken_files_are_located(void)
         { "id,species,x,y,z,ux,uy,uz,wx,wy,wz\n1,1,0,0,zero,0,0,0,0,0,0\n", ":2: \"zero\" in column \"z\"" },
         { "id,species,x,y,z,ux,uy,uz,wx,wy,wz\n1,1,0,0\n", "4 values where 11 are needed" },
         { "id,species,x,y,z,ux,uy,uz,wx,wy,wz\n2,1,0,0,0,0,0,0,0,0,0\n", "id 2 where 1 is due" },
+        { "id,species,x,y,z,ux,uy,uz,wx,wy,wz\n1.5,1,0,0,0,0,0,0,0,0,0\n", "id 1.5 where 1 is due" },
         { "id,species,x,y,z,ux,uy,uz,wx,wy,wz\n1,3,0,0,0,0,0,0,0,0,0\n", "species 3" },
+        { "id,species,x,y,z,ux,uy,uz,wx,wy,wz,x\n1,1,0,0,0,0,0,0,0,0,0,9\n", "column \"x\" is there twice" },
+        { "id,species,x,y,z,ux,uy,uz,wx,wy,wz\n1,1,0,,0,0,0,0,0,0,0\n", ":2: \"\" in column \"y\"" },
+        { "id,species,x,y,z,ux,uy,uz,wx,wy,wz\n1,1,0,1e11,0,0,0,0,0,0,0\n", "more than 1e9 cells away" },
         { "state,id,species,x,y,z,ux,uy,uz,wx,wy,wz\n1,1,1,0,0,0,0,0,0,0,0,0\n", "state 1 where 0 is due" },
         { "id,species,x,y,z,ux,uy,uz,wx,wy,wz\n", "no particles" },
     };
@@ -200,6 +220,36 @@ static void broken_files_are_located(void)
         check_true(!run_with(set, 1, NULL, &wrong) && wrong.code == ERROR_INPUT && strstr(wrong.text, tables[k][1]), wrong.text);
     }
     free(sim);
+}
+
+/* An empty cell is a cell: columns that nobody reads may have them, and those behind keep their places. */
+static void empty_cells_shift_nothing(void)
+{
+    struct error e = { 0 };
+    struct simulation *sim = calloc(1, sizeof *sim);
+    static const char *const set[] = { "start={\"file\":\"states.csv\"}" };
+    const struct scene_options options = { .set = set, .set_count = 1 };
+    make_folder();
+    write_text(in_folder("states.csv"), "id,species,note,x,y,z,ux,uy,uz,wx,wy,wz,extra\r\n1,1,,3,4,5,0.1,0,0,0,0,0.7,\r\n");
+    check_true(scene_build(scene_path, &options, sim, &e), e.text);
+    if (!error_raised(&e)) {
+        const struct particles *p = &sim->suspension.particles;
+        check_close(norm(minus(p->position[0], vec(3, 4, 5))), 0, 0, "place");
+        check_close(p->velocity[0].x, 0.1, 0, "velocity");
+        check_close(p->spin[0].z, 0.7, 0, "spin");
+    }
+    simulation_close(sim, &e);
+    free(sim);
+}
+
+/* Numbers that leave are said where no pair force looks at them either. */
+static void numbers_that_leave_are_said(void)
+{
+    struct error e = { 0 };
+    static const char *const set[] = { "forces={\"applied\":{\"small\":{\"force\":[1e308,0,0],\"torque\":[0,0,0]}}}", "species[0].density=1e-8", "run.steps=9", "start.thermal=false",
+                                       "dynamics.verlet.dt=1" };
+    make_folder();
+    check_true(!run_with(set, 5, in_folder("leaving"), &e) && e.code == ERROR_RUN && strstr(e.text, "left the numbers"), e.text);
 }
 
 static void random_start_does_not_overlap(void)
@@ -343,6 +393,8 @@ static const struct unit_test tests[] = {
     { "flows across a plane are refused", flows_across_a_plane_are_refused },
     { "what leaves a plane is refused", what_leaves_a_plane_is_refused },
     { "broken files are located", broken_files_are_located },
+    { "empty cells shift nothing", empty_cells_shift_nothing },
+    { "numbers that leave are said", numbers_that_leave_are_said },
     { "a random start does not overlap", random_start_does_not_overlap },
     { "looking changes nothing", looking_changes_nothing },
     { "runs that cannot write say so", runs_that_cannot_write_say_so },
