@@ -157,10 +157,10 @@ static void answers_in_plain_text(void)
 {
     char why[WHY_LENGTH] = "", path[PATH_LENGTH];
     struct forces f;
-    check_true(made("forces.txt", "# as Fortran may write it\n 0 drag 1 1.5D-03 2*0.0\n   3*1.0d0\n 0 'drag' 2 -1.0 0 0 0 0 0 # two\n", "forces", why), why);
+    check_true(made("forces.txt", "# as Fortran may write it\n 0 drag 1 1.5D-03 0.0 1.5-103\n   3*1.0d0\n 0 'drag' 2 -1.0 0 0 0 0 0 # two\n", "forces", why), why);
     path_join(path, folder, "forces.csv");
     check_true(forces_read(path, 1, 2, "drag", &f, why), why);
-    check_true(forces_at(&f, 0, "drag", 1)[0] == 1.5e-3 && forces_at(&f, 0, "drag", 1)[5] == 1 && forces_at(&f, 0, "drag", 2)[0] == -1, "numbers");
+    check_true(forces_at(&f, 0, "drag", 1)[0] == 1.5e-3 && forces_at(&f, 0, "drag", 1)[2] == 1.5e-103 && forces_at(&f, 0, "drag", 1)[5] == 1 && forces_at(&f, 0, "drag", 2)[0] == -1, "numbers");
     forces_free(&f);
     check_true(!made("forces.txt", "0 drag 1 1 2 3 4 5 6\n0 drag 2 1 2 3", "forces", why) && strstr(why, "forces.txt:2: the last row has 6 values; rows have 9"), why);
     check_true(!made("forces.txt", "0 drag 1 1 2 ***** 4 5 6\n", "forces", why) && strstr(why, "forces.txt:1: column 'fz' holds '*****'"), why);

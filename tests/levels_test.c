@@ -184,6 +184,15 @@ static void export_run_judge(void)
     check_true(strstr(said, "1 passed, 1 failed, 1 skipped") != NULL, "what was not supported is skipped, a crash fails");
     snprintf(arguments, sizeof arguments, "judge %s --layer pair", there);
     expect(gate(arguments), 2, "was settled by `gate export`");
+
+    /* Capabilities that stand beside the program are kept like those that are named: judge knows that nothing turns. */
+    shell("printf '#!/bin/sh\nexec %s/shear --evaluate \"$@\"\n' >%s/beside && chmod +x $_", programs, folder);
+    shell("echo '{\"contract\": \"1.0\", \"physics\": [\"drag\", \"shear\", \"unequal\", \"stress\"]}' >%s/beside.capabilities.json %s", folder, "");
+    snprintf(arguments, sizeof arguments, "export %s/plain --candidate %s/beside --case drag,contact-friction", folder, folder);
+    expect(gate(arguments), 0, "1 questions in");
+    shell("sh %s/plain/run.sh %s/beside >/dev/null", folder, folder);
+    snprintf(arguments, sizeof arguments, "judge %s/plain", folder);
+    expect(gate(arguments), 0, "1 passed, 0 failed, 1 skipped");
 }
 
 /* A check that always finds p = 1e-5 and 0.5 when asked again. */

@@ -26,29 +26,39 @@ static bool is_empty(const char *folder)
     return entries <= 2;
 }
 
-bool export_begin(const char *folder, int count, char **options, char why[WHY_LENGTH])
+/* One option to be kept; a file of capabilities as a copy, for the folder may go elsewhere. */
+static bool keep(json_t *chosen, const char *folder, const char *key, const char *value, char why[WHY_LENGTH])
 {
-    char path[PATH_LENGTH], file[PATH_LENGTH];
+    char file[PATH_LENGTH];
     json_error_t error;
+    bool good = true;
+    json_object_set_new(chosen, key, json_string(value));
+    if (strcmp(key, "--capabilities") != 0)
+        return true;
+    json_t *capabilities = json_load_file(value, 0, &error);
+    path_join(file, folder, "capabilities.json");
+    if (!capabilities)
+        good = error.line < 0 ? why_not(why, "%s: %s", value, error.text) : why_not(why, "%s:%d:%d: %s", value, error.line, error.column, error.text);
+    else if ((good = folder_make(folder, why)) && json_dump_file(capabilities, file, JSON_INDENT(1)) != 0)
+        good = why_not(why, "cannot write %s", file);
+    json_object_set_new(chosen, key, json_string(file));
+    json_decref(capabilities);
+    return good;
+}
+
+bool export_begin(const char *folder, int count, char **options, const char *capabilities, char why[WHY_LENGTH])
+{
+    char path[PATH_LENGTH];
     if (!is_empty(folder))
         return why_not(why, "%s is not empty; export writes to a new folder", folder);
     json_t *chosen = json_object();
     bool good = true;
     for (int k = 0; k + 1 < count && good; k += 2) {
-        if (!export_keeps(options[k]))
-            continue;
-        json_object_set_new(chosen, options[k], json_string(options[k + 1]));
-        if (strcmp(options[k], "--capabilities") != 0)
-            continue;
-        json_t *capabilities = json_load_file(options[k + 1], 0, &error);
-        path_join(file, folder, "capabilities.json");
-        if (!capabilities)
-            good = why_not(why, "%s:%d:%d: %s", options[k + 1], error.line, error.column, error.text);
-        else if ((good = folder_make(folder, why)) && json_dump_file(capabilities, file, JSON_INDENT(1)) != 0)
-            good = why_not(why, "cannot write %s", file);
-        json_object_set_new(chosen, options[k], json_string(file));
-        json_decref(capabilities);
+        if (export_keeps(options[k]))
+            good = keep(chosen, folder, options[k], options[k + 1], why);
     }
+    if (good && capabilities && !json_object_get(chosen, "--capabilities"))
+        good = keep(chosen, folder, "--capabilities", capabilities, why);
     path_join(path, folder, "gate-export.json");
     json_t *all = json_pack("{ss sO}", "contract", CONTRACT, "options", chosen);
     if (good && (good = folder_make(folder, why)) && json_dump_file(all, path, JSON_INDENT(1)) != 0)

@@ -288,7 +288,9 @@ int main(int argc, char **argv)
             return usage("%s was settled by `gate export`; export anew to choose otherwise", argv[k]);
         code = options_parse(&o, argv[k], k + 1 < argc ? argv[k + 1] : NULL);
     }
-    if (code == 0 && o.exporting && !export_begin(o.folder, argc - 3, argv + 3, why))
+    char beside[PATH_LENGTH];       /* capabilities that stand beside a candidate are kept as those that are named */
+    const bool found = o.exporting && o.candidate && !o.capabilities && capabilities_beside(o.candidate, beside);
+    if (code == 0 && o.exporting && !export_begin(o.folder, argc - 3, argv + 3, found ? beside : NULL, why))
         return usage("%s", why);
     if (code != 0)
         return code;

@@ -1,6 +1,6 @@
 /*
  * Answers in plain text, made into the files that checks read. A table is a stream of values: line breaks do not count, since list-directed output
- * may wrap; `#` starts a comment; 1.5D-03 and 3*0.0 are what Fortran may write.
+ * may wrap; `#` starts a comment; 1.5D-03 3*0.0 and, with three digits, 1.5-103 are what Fortran may write.
  */
 #include "plain.h"
 
@@ -45,11 +45,16 @@ static bool next_token(struct stream *s)
 
 static bool as_number(struct stream *s, const char *column, double *value, char why[WHY_LENGTH])
 {
-    char text[TOKEN], *end;
+    char text[TOKEN + 1], *end;
     strcpy(text, s->token);
     for (char *c = text; *c; c++)
         *c = *c == 'd' || *c == 'D' ? 'e' : *c;
     *value = strtod(text, &end);
+    if (end != text && (*end == '-' || *end == '+') && strspn(end + 1, "0123456789") == strlen(end + 1) && strlen(end) == 4 && !strchr(text, 'e')) {
+        memmove(end + 1, end, strlen(end) + 1);         /* no room for the letter of the exponent */
+        *end = 'e';
+        *value = strtod(text, &end);
+    }
     return (*text && *end == '\0' && isfinite(*value))
            || why_not(why, "%s:%zu: column '%s' holds '%s', not a finite number", s->path, s->line, column, s->token);
 }

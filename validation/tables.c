@@ -108,8 +108,8 @@ static bool parse_header(struct reader *r, struct wanted *wanted, size_t count, 
     *places = place + 1;
     for (size_t w = 0; w < count; w++)
         if (wanted[w].at < 0 && !wanted[w].optional)
-            return why_not(why, "%s:%zu: column '%s' is missing from the header", r->path, r->line,
-                           wanted[w].name);
+            return why_not(why, "%s:%zu: column '%s' is missing from the header%s", r->path, r->line,
+                           wanted[w].name, strchr(r->text, ';') && !strchr(r->text, ',') ? ": fields are separated by commas, not semicolons" : "");
     return true;
 }
 
@@ -180,7 +180,7 @@ bool table_read(const char *path, const char *columns, struct table *t, char why
     struct reader r = { .path = path, .line = 1 };
     if (!read_whole(path, &r.text, &length, why))
         return false;
-    r.at = r.text;
+    r.at = r.text + (length >= 3 && memcmp(r.text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0);      /* a byte-order mark is no part of the first name */
     bool good = memchr(r.text, '\0', length) == NULL;
     if (!good)
         why_not(why, "%s: is not a text file", path);

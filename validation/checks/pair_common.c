@@ -331,6 +331,8 @@ const char *compare(const struct worst *w)
     else if (fabs(w->measured / w->expected - 1) < FEW_DIGITS)
         snprintf(text, sizeof text, "%.12g where %.12g is expected, %.2g of it too %s", w->measured, w->expected,
                  fabs(w->measured / w->expected - 1), fabs(w->measured) > fabs(w->expected) ? "much" : "little");
+    else if (fabs(w->measured / w->expected + 1) < 1e-6)
+        snprintf(text, sizeof text, "%.6g where %.6g is expected, the opposite sign", w->measured, w->expected);
     else
         snprintf(text, sizeof text, "%.6g where %.6g is expected, %.6g of it", w->measured, w->expected,
                  w->measured / w->expected);

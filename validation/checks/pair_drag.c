@@ -147,7 +147,7 @@ void pair_drag(struct check_run *run)
         forces_free(&answer.forces);
         book_free(&book);
         json_decref(scene);
-        if (!answered && results_verdict(&run->results) != VERDICT_PASS)
-            return; /* it will not do better in the others; but where some passed, one without support says nothing of them */
+        if (!answered && results_verdict(&run->results) == VERDICT_FAIL)
+            return; /* it will not do better in the others; but one that is not supported says nothing of them */
     }
 }
