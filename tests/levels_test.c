@@ -186,7 +186,8 @@ static void export_run_judge(void)
     expect(gate(arguments), 2, "was settled by `gate export`");
 
     /* Capabilities that stand beside the program are kept like those that are named: judge knows that nothing turns. */
-    shell("printf '#!/bin/sh\nexec %s/shear --evaluate \"$@\"\n' >%s/beside && chmod +x $_", programs, folder);
+    shell("printf '#!/bin/sh\nexec %s/shear --evaluate \"$@\"\n' >%s/beside", programs, folder);
+    shell("chmod +x %s/beside %s", folder, "");
     shell("echo '{\"contract\": \"1.0\", \"physics\": [\"drag\", \"shear\", \"unequal\", \"stress\"]}' >%s/beside.capabilities.json %s", folder, "");
     snprintf(arguments, sizeof arguments, "export %s/plain --candidate %s/beside --case drag,contact-friction", folder, folder);
     expect(gate(arguments), 0, "1 questions in");
