@@ -83,6 +83,32 @@ static void print_sentence(const struct result *r)
     snprintf(text, sizeof text, r->verdict == VERDICT_SKIP ? "%s" : "%s [%s]", r->sentence ? r->sentence : "", r->what);
     print_wrapped(result_counts(r), r->accepted ? "known" : r->verdict == VERDICT_FAIL ? "fails" : verdict_word(r->verdict), text);
 }
+
+/* What a quantity is called without the variant of the scene: "x along y, time 1.3: torque" is a "torque". */
+static const char *kind_of(const struct result *r)
+{
+    const char *colon = strrchr(r->what, ':');
+    return colon ? colon + 1 : r->what;
+}
+
+/* One of each kind comes before a second of any: six times the same sentence would hide the one that names the term. */
+static void different_first(const struct result **order, int count)
+{
+    const struct result **again = malloc(((size_t)count + 1) * sizeof *again);
+    int first = 0, later = 0;
+    for (int k = 0; k < count; k++) {
+        bool seen = false;
+        for (int n = 0; n < first && !seen; n++)
+            seen = result_counts(order[n]) == result_counts(order[k]) && strcmp(kind_of(order[n]), kind_of(order[k])) == 0;
+        if (seen)
+            again[later++] = order[k];
+        else
+            order[first++] = order[k];
+    }
+    memcpy(order + first, again, (size_t)later * sizeof *again);
+    free(again);
+}
+
 static void print_sentences(const struct results *r)
 {
     const struct result **order = malloc((r->count + 1) * sizeof *order);
@@ -91,6 +117,7 @@ static void print_sentences(const struct results *r)
         if (r->item[k].verdict != VERDICT_PASS)
             order[count++] = &r->item[k];
     qsort(order, (size_t)count, sizeof *order, worse_first);
+    different_first(order, count);
     for (int k = 0; k < count && k < SENTENCES_AT_MOST; k++)
         print_sentence(order[k]);
     if (count > SENTENCES_AT_MOST)
