@@ -188,6 +188,25 @@ static void short_tables_are_refused(void)
     check_same(whole(), in_folder("short"), "after all");
 }
 
+/* A tether holds where the run began, whatever has become of the file that said so. */
+static void anchors_are_kept(void)
+{
+    static const char *const set[] = { "start={\"file\":\"start.csv\"}", "shear=[]", "forces={\"tether\":{\"small\":{\"stiffness\":2}}}", "output={\"states\":{\"every\":50},\"checkpoint\":{\"every\":50}}",
+                                       "dynamics.verlet.dt=1e-3", "fluid={}", "run.steps=100" };
+    const struct scene_options all = { .set = set, .set_count = 6 }, part = { .set = set, .set_count = 7 }, rest = { .set = set, .set_count = 6, .resume = true };
+    struct error e;
+    make_folder();
+    for (int moved = 0; moved < 2; moved++) {
+        FILE *out = fopen(in_folder("start.csv"), "w");
+        fprintf(out, "id,species,x,y,z,ux,uy,uz,wx,wy,wz\n1,1,%d,1,1,0.5,0,0,0,0,0\n", moved ? 3 : 1);
+        fclose(out);
+        if (!moved)
+            check_true(run_as(&all, in_folder("held"), &e) == 0 && run_as(&part, in_folder("held-split"), &e) == 0, e.text);
+    }
+    check_true(run_as(&rest, in_folder("held-split"), &e) == 0, e.text);
+    check_same_file(in_folder("held"), in_folder("held-split"), "trajectory.csv", "the start has been moved in between");
+}
+
 /* One flow along two gradients, one oscillating, one that jumps: the box's state follows from the time alone. */
 static void staged_runs_go_on(void)
 {
@@ -351,6 +370,7 @@ static const struct unit_test tests[] = {
     { "the run has remaps, lists and frictional contacts", the_run_has_remaps_and_lists },
     { "a run split in two is the whole run", split_runs_are_the_whole },
     { "short tables are refused", short_tables_are_refused },
+    { "anchors are kept", anchors_are_kept },
     { "a run in stages goes on", staged_runs_go_on },
     { "a run at rest goes on", runs_at_rest_go_on },
     { "runs of the other integrators go on", other_integrators_go_on },

@@ -272,6 +272,19 @@ static void contacts_beside_walls_listed_first(void)
                    "\"dynamics\": { \"verlet\": { \"dt\": 0.005 } }, \"run\": { \"steps\": 3 }, \"output\": { \"contacts\": { \"every\": 1 } } }", &e), e.text);
 }
 
+/* Two held spheres are no pair: they add nothing to the structural Brownian stress, one held and one free add all. */
+static void held_spheres_have_no_brownian_stress(void)
+{
+    struct error e;
+    write_text(in_folder("held.csv"), "id,species,x,y,z,ux,uy,uz,wx,wy,wz\n1,1,1,1,1,0,0,0,0,0,0\n2,1,3,1,1,0,0,0,0,0,0\n3,2,3,3,1,0,0,0,0,0,0\n");
+    check_true(run("{ \"about\": \"test\", \"seed\": 9, \"fluid\": { \"kT\": 1 }, \"box\": { \"lengths\": [8, 8, 8], \"periodic\": [true, true, true] },\n"
+                   "\"species\": [ { \"name\": \"wall\", \"radius\": 1, \"density\": 1, \"motion\": \"held\" }, { \"name\": \"free\", \"radius\": 1, \"density\": 1 } ],\n"
+                   "\"forces\": { \"contact\": { \"normal_stiffness\": 100, \"friction\": 0 } }, \"start\": { \"file\": \"held.csv\" },\n"
+                   "\"dynamics\": { \"verlet\": { \"dt\": 0.005 } }, \"run\": { \"steps\": 0 }, \"output\": { \"brownian_stress\": { \"every\": 1 } } }", &e), e.text);
+    check_close(cell_of("brownian_stress.csv", "0", "raw_xx"), 0, 0, "two held spheres along x");
+    check_close(cell_of("brownian_stress.csv", "0", "raw_yy"), -1.0 / 512 * 2 / 0.05, 1e-14, "a held and a free one along y");
+}
+
 static const struct unit_test tests[] = {
     { "instants by hand", instants_by_hand },
     { "a honeycomb holds itself", a_honeycomb_holds_itself },
@@ -280,6 +293,7 @@ static const struct unit_test tests[] = {
     { "an ideal gas has g of one", ideal_gas_has_g_of_one },
     { "free spheres diffuse", free_spheres_diffuse },
     { "contacts beside walls that are listed first", contacts_beside_walls_listed_first },
+    { "held spheres have no Brownian stress", held_spheres_have_no_brownian_stress },
     { "wrong observers are named", wrong_observers_are_named },
     { NULL, NULL }
 };

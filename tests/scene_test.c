@@ -326,6 +326,24 @@ static void pictures_show_the_sheared_cell(void)
     free(dump);
 }
 
+/* Whatever line breaks a text has, it stays a comment above the header. */
+static void texts_stay_comments(void)
+{
+    struct error e = { 0 };
+    static const char *const set[] = { "about=\"one line\\nstep,time,strain\\r\\nand a third\"", "run.steps=0" };
+    make_folder();
+    check_true(run_with(set, 2, in_folder("texts"), &e), e.text);
+    char *table = contents(in_folder("texts/stress.csv"));
+    int headers = 0;
+    for (char *line = strtok(table, "\n"); line && headers < 2; line = strtok(NULL, "\n"))
+        if (*line != '#') {
+            check_true(strncmp(line, headers ? "0," : "step,time,strain,", headers ? 2 : 17) == 0, line);
+            headers++;
+        }
+    check_true(headers == 2, "a header and a row");
+    free(table);
+}
+
 /* The three protocols of a case, through files, as the gate calls them. */
 static void cases_are_answered(void)
 {
@@ -399,6 +417,7 @@ static const struct unit_test tests[] = {
     { "looking changes nothing", looking_changes_nothing },
     { "runs that cannot write say so", runs_that_cannot_write_say_so },
     { "pictures show the sheared cell", pictures_show_the_sheared_cell },
+    { "texts stay comments", texts_stay_comments },
     { "cases are answered", cases_are_answered },
     { NULL, NULL }
 };

@@ -1,6 +1,6 @@
 /*
  * Answers in plain text, made into the files that checks read. A table is a stream of values: line breaks do not count, since list-directed output
- * may wrap; `#` starts a comment; 1.5D-03 3*0.0 and, with three digits, 1.5-103 are what Fortran may write.
+ * may wrap; `#` starts a comment; 1.5D-03, 3*0.0 and, with three digits, 1.5-103 are what Fortran may write.
  */
 #include "plain.h"
 

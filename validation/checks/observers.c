@@ -150,17 +150,12 @@ static void find_pairs(struct film *f, size_t frame)
         }
 }
 
-/* How many lags a table has: 16 at one frame, then 8 at every doubling of it, as long as the run has two frames so far apart. */
-static size_t lags_due(const struct film *f, const char *table)
+/* How many lags a table of this name has. */
+static size_t lags_of(const struct film *f, const char *table)
 {
     char key[96];
     snprintf(key, sizeof key, "tables.%s.levels", table);
-    const double levels = scene_number(f->run->gate_case->parameters, key, NAN);
-    size_t due = 0, width = 1;
-    for (int level = 0; level < levels; level++, width *= 2)
-        for (size_t lag = level ? 9 : 1; lag <= 16; lag++)
-            due += lag * width < f->frames;
-    return due;
+    return lags_due(scene_number(f->run->gate_case->parameters, key, NAN), f->frames);
 }
 
 /* How many rows a table must have; 0: as many as it has. */
@@ -169,11 +164,11 @@ static size_t rows_due(const struct film *f, const char *file)
     const json_t *p = f->run->gate_case->parameters;
     const double pairs = 0.5 * (double)(f->m.species * (f->m.species + 1));
     if (strcmp(file, "displacement.csv") == 0)
-        return f->m.species * lags_due(f, "displacement");
+        return f->m.species * lags_of(f, "displacement");
     if (strcmp(file, "velocity_correlation.csv") == 0)
-        return f->m.species * (lags_due(f, "velocity_correlation") + 1);
+        return f->m.species * (lags_of(f, "velocity_correlation") + 1);
     if (strcmp(file, "green_kubo.csv") == 0)
-        return lags_due(f, "green_kubo") + 1;
+        return lags_of(f, "green_kubo") + 1;
     if (strcmp(file, "pair_distribution.csv") == 0)
         return (size_t)(pairs * (scene_number(p, "tables.pair_distribution.bins", 0.0) + scene_number(p, "tables.pair_distribution.near.bins", 0.0)));
     if (strcmp(file, "pair_plane.csv") == 0)
@@ -192,7 +187,7 @@ static bool moments_are_right(const struct film *f, const char *file, char why[W
     bool good = true;
     for (size_t r = 0; r < t.rows && good; r++) {
         const double step = (double)r * f->every, time = f->begin + step * f->dt;
-        if (table_at(&t, r, 0) != step || fabs(table_at(&t, r, 1) - time) > 1e-3 * f->dt + 1e-5 * fabs(time))       /* however few digits */
+        if (table_at(&t, r, 0) != step || !time_is(table_at(&t, r, 1), time, f->dt))
             good = why_not(why, "%s: row %zu is of step %g at time %g where step %g at time %g is due", file, r + 1, table_at(&t, r, 0), table_at(&t, r, 1), step, time);
     }
     table_free(&t);

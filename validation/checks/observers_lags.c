@@ -71,31 +71,19 @@ static double derived(const struct table *t, size_t r, bool slope, double *integ
     return slope ? 0.5 * (now - before) / step : *integral;
 }
 
-/* The longest lag of a table in frames: 16 lags at one frame, then 8 at every doubling of it, as long as the run has two frames so far apart. */
-static double longest_lag(const struct film *f, const char *file)
-{
-    char key[96];
-    snprintf(key, sizeof key, "tables.%.*s.levels", (int)strcspn(file, "."), file);
-    const double levels = scene_number(f->run->gate_case->parameters, key, NAN);
-    double longest = 0.0, width = 1.0;
-    for (int level = 0; level < levels; level++, width *= 2.0)
-        for (double lag = 1.0; lag <= 16.0; lag += 1.0)
-            longest = lag * width < (double)f->frames ? fmax(longest, lag * width) : longest;
-    return longest;
-}
-
 static void judge_lags(const struct film *f, const char *file, const char *columns, bool slope, product_of *product)
 {
     struct table t;
     struct worst w = WORST_NONE, samples = WORST_NONE, last = WORST_NONE;
-    double integral = 0.0, largest = 0.0, lags = 0.0;
+    double integral = 0.0, largest = 0.0;
     if (!film_table(f, file, columns, &t))
         return;
     for (size_t r = 0; r < t.rows; r++)
         largest = fmax(largest, fabs(table_at(&t, r, 9)));
-    for (size_t r = 0; r < t.rows; r++)
-        lags = fmax(lags, round(table_at(&t, r, 0) / (f->every * f->dt)));
-    worst_see(&samples, lags, longest_lag(f, file), 1.0, t.rows - 1);
+    for (size_t r = 0, k = 0; r < t.rows; r++) {           /* species by species all lags: of displacements from the first, of correlations from none */
+        k = r > 0 && table_at(&t, r, 1) == table_at(&t, r - 1, 1) ? k + 1 : slope;
+        worst_see(&samples, round(table_at(&t, r, 0) / (f->every * f->dt)), (double)lag_of(k), 1.0, r);
+    }
     for (size_t r = 0; r < t.rows; r++) {
         worst_see(&last, table_at(&t, r, 9), derived(&t, r, slope, &integral), largest, r);
         double mean[6], scale[2] = { 0 };

@@ -37,13 +37,25 @@ static double step_of(const json_t *scene)
     return NAN;
 }
 
+size_t lag_of(size_t k) { return k <= 16 ? k : (9 + (k - 17) % 8) << (1 + (k - 17) / 8); }
+
+size_t lags_due(double levels, size_t samples)
+{
+    size_t due = 0;
+    while ((double)due < 16.0 + 8.0 * (levels - 1.0) && lag_of(due + 1) < samples)
+        due++;
+    return due;
+}
+
+bool time_is(double said, double time, double dt) { return fabs(said - time) <= 1e-3 * dt + 1e-5 * fabs(time); }
+
 struct clock { double begin, dt; const struct state_row *start; /* NULL: not known */ };
 
 /* Whether a row is of its moment, and of a sphere of its species; however few digits the time has. */
 static bool row_is_right(const struct table *t, size_t r, const struct clock *c, char why[WHY_LENGTH])
 {
     const double step = table_at(t, r, 0), id = table_at(t, r, 1), said = table_at(t, r, 14), species = table_at(t, r, 15), time = c->begin + step * c->dt;
-    if (isfinite(said) && isfinite(time) && fabs(said - time) > 1e-3 * c->dt + 1e-5 * fabs(time))
+    if (isfinite(said) && isfinite(time) && !time_is(said, time, c->dt))
         return why_not(why, "%s: step %g has the time %g where %g is due", t->path, step, said, time);
     if (c->start && isfinite(species) && species != c->start[(size_t)id - 1].species)
         return why_not(why, "%s: particle %g is of species %g where the start says %d", t->path, id, species, c->start[(size_t)id - 1].species);

@@ -20,6 +20,11 @@ bool track_ask(struct check_run *run, const char *name, json_t *scene, const str
 /* Its two halves, for those who ask for more outputs: what to write into the scene before asking, and the reading. */
 void track_want(json_t *scene, const int *at, size_t steps);
 bool track_load(struct check_run *run, const char *out, const int *at, size_t steps, size_t count, struct track *t);
+/* The k-th lag of a table, from 1, in samples: 1 to 16, then 9 to 16 times each power of 2; and how many a run of so many samples has. */
+size_t lag_of(size_t k);
+size_t lags_due(double levels, size_t samples);
+/* Whether a time that was written, however few digits it has, is this moment. */
+bool time_is(double said, double time, double dt);
 const struct track_point *track_at(const struct track *t, size_t step, size_t sphere);
 void track_free(struct track *t);
 
@@ -31,9 +36,6 @@ struct free_sphere free_sphere(const struct model *m);
 enum { STAGES = 8 };
 size_t stages_read(const json_t *list, struct theory_stage stage[STAGES]);
 void stages_strain(const struct theory_stage *stage, size_t stages, double t, double S[3][3]);
-
-/* A run of free spheres through these stages that begins in the middle. False: no answer; recorded already. */
-bool stages_try_late(struct check_run *run, const json_t *drive, size_t number, double begin);
 
 void check_langevin(struct check_run *run);
 void check_shear(struct check_run *run);

@@ -5,7 +5,7 @@
  * either way, begun at a random moment: stress of the drag, way travelled, deformation and turn of the flow as in single_stages.c. A law that is
  * right for the drives of that case only shows here. Stages and the begin fall on whole steps.
  */
-#include "single.h"
+#include "stages.h"
 
 #include <gsl/gsl_randist.h>
 #include <stdio.h>

@@ -9,13 +9,13 @@
  * steps at which a rate jumps the flow before and the flow after are right, and nothing else. Half of the spheres start with the flow and stay with it, half
  * are thrown, and all pass the faces of the cell, which the flow deforms there and back.
  */
-#include "single.h"
+#include "stages.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { SPHERES = 8, REFINED = 3 };
+enum { SPHERES = STAGES_SPHERES, REFINED = 3 };
 
 static int axis_of(const json_t *shear, const char *key)
 {
@@ -51,8 +51,7 @@ size_t stages_read(const json_t *list, struct theory_stage stage[STAGES])
     return json_array_size(list);
 }
 
-/* With the flow, every other one thrown; where none is (speed 0) up to two cells away, too: crossing faces is not the only way to feel the cell. */
-static void place(struct check_run *run, const struct model *m, const struct theory_stage *stage, size_t stages, double speed, struct state_row start[SPHERES])
+void stages_place(struct check_run *run, const struct model *m, const struct theory_stage *stage, size_t stages, double speed, struct state_row start[SPHERES])
 {
     gsl_rng *random = pair_random(run);
     double G[3][3], way;
@@ -92,11 +91,7 @@ static void flow_of_row(const struct theory_stage *stage, size_t stages, double 
     }
 }
 
-/* The moments of a table: every so many steps, `rows` in all; `travelled`: the strain before the run began. */
-struct rows_of_run { double begin, dt, travelled; int every; size_t rows; };
-
-/* Drag's stress and the strain of every row against the flow of that moment. False after recording that it cannot be read. */
-static bool judge_flow(struct check_run *run, const char *drive, const char *name, const struct model *m, const struct theory_stage *stage, size_t stages,
+bool stages_judge_flow(struct check_run *run, const char *drive, const char *name, const struct model *m, const struct theory_stage *stage, size_t stages,
                        const struct rows_of_run *of)
 {
     const double dt = of->dt, travelled = of->travelled;
@@ -112,7 +107,7 @@ static bool judge_flow(struct check_run *run, const char *drive, const char *nam
     bool good = table_expect_rows(&t, of->rows, why);
     for (size_t r = 0; r < t.rows && good; r++) {
         const double time = of->begin + (double)r * of->every * dt;
-        if (fabs(table_at(&t, r, 0) - time) > 1e-3 * dt + 1e-5 * fabs(time))
+        if (!time_is(table_at(&t, r, 0), time, dt))
             good = why_not(why, "%s: row %zu is of time %g where %g is due", t.path, r + 1, table_at(&t, r, 0), time);
     }
     if (!good) {
@@ -210,7 +205,7 @@ static bool try_drive(struct check_run *run, const json_t *drive, size_t number)
     const struct moments o = { stage, stages, m.open, sphere.mass / sphere.friction, sphere.inertia / sphere.spin_friction,
                                scene_number(parameters, "dt", NAN), scene_number(parameters, "speed", NAN), scene_number(parameters, "rate", NAN) };
     parameter_list(parameters, "at", list, &steps, 16);
-    place(run, &m, stage, stages, o.speed, start);
+    stages_place(run, &m, stage, stages, o.speed, start);
     for (int r = 0; good && r < REFINED; r++) {
         char name[64];
         for (size_t k = 0; k < steps; k++)
@@ -219,7 +214,7 @@ static bool try_drive(struct check_run *run, const json_t *drive, size_t number)
         scene_set(scene, "dynamics.verlet.dt", json_real(ldexp(o.dt, -r)));
         scene_set(scene, "output.stress", json_pack("{si}", "every", 1));
         scene_set(scene, "output.viscosity", json_pack("{si}", "every", 1));
-        good = track_ask(run, name, scene, start, SPHERES, at, steps, &track[r]) && (r || judge_flow(run, label, name, &m, stage, stages, &(struct rows_of_run){ 0.0, o.dt, 0.0, 1, (size_t)at[steps - 1] + 1 }));
+        good = track_ask(run, name, scene, start, SPHERES, at, steps, &track[r]) && (r || stages_judge_flow(run, label, name, &m, stage, stages, &(struct rows_of_run){ 0.0, o.dt, 0.0, 1, (size_t)at[steps - 1] + 1 }));
     }
     for (size_t k = 0; k < steps; k++)
         at[k] = (int)list[k];
@@ -251,191 +246,6 @@ void stages_strain(const struct theory_stage *stage, size_t stages, double t, do
             if (r->amplitude != 0.0)
                 S[r->flow][r->gradient] += r->amplitude / r->frequency * (cos(r->phase) - cos(r->frequency * s + r->phase));
         }
-}
-
-/* How far the flow itself turns a sphere until a time: the integral of half its vorticity. */
-static void turned_by(const struct theory_stage *stage, size_t stages, double t, double turn[3])
-{
-    double S[3][3];
-    stages_strain(stage, stages, t, S);
-    for (int k = 0; k < 3; k++)
-        turn[k] = 0.5 * (S[(k + 2) % 3][(k + 1) % 3] - S[(k + 1) % 3][(k + 2) % 3]);
-}
-
-enum { LATE_FRAMES = 49, LONGEST = 16 };    /* samples of a run that begins in the middle; lags up to LONGEST have all samples as origins */
-
-/* Mean square of the angle beyond that of the flow, from the angles of the trajectory. */
-static void expected_turns(const struct theory_stage *stage, size_t stages, double begin, double every, const struct track *track, double expected[LONGEST + 1][3])
-{
-    double flow[LATE_FRAMES][3];
-    for (size_t s = 0; s < LATE_FRAMES; s++)
-        turned_by(stage, stages, begin + (double)s * every, flow[s]);
-    for (size_t lag = 1; lag <= LONGEST; lag++)
-        for (size_t k = 0; k < 3; k++) {
-            double sum = 0.0, n = 0.0;
-            for (size_t s = 0; s + lag < LATE_FRAMES; s++)
-                for (size_t i = 0; i < SPHERES; i++, n += 1.0)
-                    sum += gsl_pow_2(track_at(track, s + lag, i)->turn[k] - track_at(track, s, i)->turn[k] - flow[s + lag][k] + flow[s][k]);
-            expected[lag][k] = sum / n;
-        }
-}
-
-/* Spheres that follow the flow have no displacement of their own; their spins follow it with delay, so there is an angle. */
-static void judge_displacement(struct check_run *run, const char *label, const char *out, double radius, double every, double expected[LONGEST + 1][3])
-{
-    struct worst own = WORST_NONE, turn = WORST_NONE;
-    struct table t;
-    double largest = 0.0;
-    char what[96];
-    snprintf(what, sizeof what, "%s: displacement beyond the flow's", label);
-    if (!check_table(run, out, "displacement.csv", "lag,msd_x,msd_y,msd_z,turn_x,turn_y,turn_z", what, &t))
-        return;
-    size_t due = 0;                             /* lags of three levels */
-    for (size_t width = 1; width <= 4; width *= 2)
-        for (size_t lag = width > 1 ? 9 : 1; lag <= 16; lag++)
-            due += lag * width < LATE_FRAMES;
-    if (t.rows != due) {
-        char why[WHY_LENGTH];
-        snprintf(why, sizeof why, "displacement.csv has %zu rows where the case asks for %zu lags", t.rows, due);
-        check_garbage(run, why);
-        table_free(&t);
-        return;
-    }
-    for (size_t k = 0; k < 3; k++)
-        largest = fmax(largest, expected[LONGEST][k]);
-    for (size_t r = 0; r < t.rows; r++) {
-        const size_t lag = (size_t)lround(table_at(&t, r, 0) / every);
-        for (size_t k = 0; k < 3; k++) {
-            worst_see(&own, table_at(&t, r, 1 + k), 0.0, gsl_pow_2(radius), r);
-            if (lag >= 1 && lag <= LONGEST)
-                worst_see(&turn, table_at(&t, r, 4 + k), expected[lag][k], largest, r);
-        }
-    }
-    table_free(&t);
-    check_error(run, MODEL, what, own.measured, own.expected, own.error, 1e-4, "spheres that follow the flow have a mean square displacement of %.3g of "
-                "their own: what the flow does to the old place is not taken off as it should be", own.measured);
-    snprintf(what, sizeof what, "%s: angle beyond the flow's", label);
-    check_error(run, MODEL, what, turn.measured, turn.expected, turn.error, 1e-8, "row %zu of displacement.csv says a mean square angle of %s; the angles of its trajectory "
-                "without the integral of the flow's rate of turning give that", turn.at + 1, compare(&turn));      /* sums of the same 17 digits */
-}
-
-/* Spheres that follow the flow are where it carries them from their start, in whatever cell that was. */
-static void judge_carried(struct check_run *run, const char *label, const struct theory_stage *stage, size_t stages, double begin, double every, double radius,
-                          const struct state_row start[SPHERES], const struct track *track)
-{
-    struct worst w = WORST_NONE;
-    char what[128];
-    double S[2][3][3];
-    stages_strain(stage, stages, begin, S[0]);
-    for (size_t s = 0; s < track->steps; s++) {
-        stages_strain(stage, stages, begin + (double)s * every, S[1]);
-        for (size_t i = 0; i < track->count; i++)
-            for (int k = 0; k < 3; k++) {
-                double x = start[i].x[k];
-                for (int l = 0; l < 3; l++)
-                    x += (S[1][k][l] - S[0][k][l]) * start[i].x[l];
-                worst_see(&w, track_at(track, s, i)->x[k], x, radius, i);
-            }
-    }
-    snprintf(what, sizeof what, "%s: place", label);
-    check_error(run, MODEL, what, w.measured, w.expected, w.error, 1e-2, "%s: sphere %zu, which began with the flow, is at %s", label, w.at + 1, compare(&w));
-}
-
-/*
- * A run that begins in the middle: strain counts from its begin, and spheres that follow the flow have no displacement of their own, for the
- * deformation from one moment to another is that of the rates between them.
- */
-bool stages_try_late(struct check_run *run, const json_t *drive, size_t number, double begin)
-{
-    const char *label = json_string_value(json_object_get(drive, "name"));
-    const double dt = scene_number(run->gate_case->parameters, "dt", NAN);
-    json_t *scene = variant_scene(run->gate_case, drive);
-    struct theory_stage stage[STAGES];
-    struct state_row start[SPHERES];
-    struct model m;
-    struct track track;
-    char name[64], folder[PATH_LENGTH], out[PATH_LENGTH], what[96];
-    const int every = (int)lround(1.2 / dt) / (LATE_FRAMES - 1);
-    int at[LATE_FRAMES];
-    double G[3][3], way;
-    for (int s = 0; s < LATE_FRAMES; s++)
-        at[s] = s * every;
-    scene_set(scene, "stages", json_incref(json_object_get(drive, "stages")));
-    scene_set(scene, "start.time", json_real(begin));
-    scene_set(scene, "output.stress", json_pack("{si}", "every", every));
-    scene_set(scene, "output.viscosity", json_pack("{si}", "every", every));
-    scene_set(scene, "output.displacement", json_pack("{si si}", "every", every, "levels", 3));
-    const size_t stages = stages_read(json_object_get(drive, "stages"), stage);
-    theory_driven_flow(stage, stages, begin, G, &way);
-    if (model_read(run, scene, &m))
-        place(run, &m, stage, stages, 0.0, start);
-    for (size_t i = 0; i < SPHERES; i++)
-        apply(G, start[i].x, start[i].u);
-    snprintf(name, sizeof name, "late-%zu", number);
-    snprintf(what, sizeof what, "%s, from the middle on", label);
-    const bool good = track_ask(run, name, scene, start, SPHERES, at, LATE_FRAMES, &track) && judge_flow(run, what, name, &m, stage, stages, &(struct rows_of_run){ begin, dt, way, every, LATE_FRAMES });
-    if (good) {
-        judge_carried(run, what, stage, stages, begin, every * dt, m.radius[0], start, &track);
-        double turns[LONGEST + 1][3] = { { 0 } };
-        expected_turns(stage, stages, begin, every * dt, &track, turns);
-        track_free(&track);
-        path_join(folder, run->work, name);
-        path_join(out, folder, "out");
-        judge_displacement(run, label, out, m.radius[0], every * dt, turns);
-    }
-    json_decref(scene);
-    return good;
-}
-
-/*
- * Two spheres near contact, within the cell and across a face: their motion against each other is the same. The velocity of an image is that
- * of the middle of the step, like the velocities that it is compared with; at the end of the step it would be wrong by half a step of the flow's change.
- */
-void check_stages_pair(struct check_run *run)
-{
-    const json_t *parameters = run->gate_case->parameters;
-    json_t *scene = json_deep_copy(run->gate_case->scene);
-    struct theory_stage stage[STAGES];
-    struct state_row start[2];
-    struct track track[2] = { { 0 } };
-    struct worst w[3] = { WORST_NONE, WORST_NONE, WORST_NONE };
-    struct model m;
-    int at[8];
-    double G[3][3], way;
-    bool good = model_read(run, scene, &m);
-    const size_t stages = stages_read(scene_get(scene, "stages"), stage);
-    const double a = m.radius[0], n[3] = { 0.36, 0.48, 0.8 }, rate = scene_number(parameters, "rate", NAN), apart = scene_number(parameters, "apart", 1.01);
-    theory_driven_flow(stage, stages, 0.0, G, &way);
-    for (int k = 0; k < 8; k++)
-        at[k] = (int)scene_number(parameters, "steps", NAN) / 8 * (k + 1);
-    for (int face = 0; face < 2 && good; face++) {
-        for (int side = 0; side < 2; side++) {
-            start[side] = (struct state_row){ .id = side + 1, .species = m.species > 1 ? side + 1 : 1 };
-            for (int c = 0; c < 3; c++)
-                start[side].x[c] = (face ? 0.0 : 0.5 * m.cell[c][c]) + (side ? 1.0 : -1.0) * a * apart * n[c];
-            apply(G, start[side].x, start[side].u);
-        }
-        good = track_ask(run, face ? "across-faces" : "inside", scene, start, 2, at, 8, &track[face]);
-    }
-    for (size_t s = 0; s < 8 && good; s++)
-        for (size_t c = 0; c < 3; c++) {
-            double x[2], u[2];
-            for (int face = 0; face < 2; face++) {
-                const struct track_point *p = track_at(&track[face], s, 0), *q = track_at(&track[face], s, 1);
-                x[face] = q->x[c] - p->x[c];
-                u[face] = q->u[c] - p->u[c];
-            }
-            worst_see(&w[0], x[1], x[0], a, s);
-            worst_see(&w[1], u[1], u[0], rate * a, s);
-            worst_see(&w[2], track_at(&track[1], s, 0)->w[c], track_at(&track[0], s, 0)->w[c], rate, s);
-        }
-    static const char *const names[3] = { "distance", "relative velocity", "spin" };
-    for (int q = 0; q < 3 && good; q++)
-        check_error(run, INVARIANT, names[q], w[q].measured, w[q].expected, w[q].error, run->gate_case->tolerance,
-                    "in a flow that changes with time a pair across the faces moves otherwise than inside the cell: its %s is %s", names[q], compare(&w[q]));
-    for (int face = 0; face < 2; face++)
-        track_free(&track[face]);
-    json_decref(scene);
 }
 
 void check_stages(struct check_run *run)
